@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// A context on one device with its in-order queues; programs from kernel files; typed buffers and kernels.
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "host/cl/device.h"
+#include "host/cl/handle.h"
+
+namespace turbid::cl {
+
+/// An in-order command queue.
+class Queue {
+ public:
+  Queue(cl_context context, cl_device_id device);
+  cl_command_queue get() const { return handle_.get(); }
+  /// Blocks until everything enqueued has run. Stands only where the host reads.
+  void finish();
+
+ private:
+  QueueHandle handle_;
+};
+
+/// A typed block of device memory.
+template <class T>
+class Buffer {
+ public:
+  Buffer() = default;
+  Buffer(cl_context context, std::size_t count) : count_(count) {
+    cl_int status = CL_SUCCESS;
+    // OpenCL forbids empty buffers: a stage that has nothing to store keeps one element.
+    handle_ = MemoryHandle(
+        clCreateBuffer(context, CL_MEM_READ_WRITE, sizeof(T) * (count ? count : 1), nullptr, &status));
+    check(status, "allocating device memory");
+  }
+  cl_mem get() const { return handle_.get(); }
+  std::size_t count() const { return count_; }
+  std::size_t bytes() const { return count_ * sizeof(T); }
+
+ private:
+  MemoryHandle handle_;
+  std::size_t count_ = 0;
+};
+
+struct Range {
+  std::size_t x = 1, y = 1;
+};
+
+template <class... Args>
+class Kernel;
+
+class Program {
+ public:
+  Program() = default;
+  explicit Program(ProgramHandle handle, std::string file) : handle_(std::move(handle)), file_(std::move(file)) {}
+  cl_program get() const { return handle_.get(); }
+  const std::string& file() const { return file_; }
+  KernelHandle kernel(const char* name) const;
+
+ private:
+  ProgramHandle handle_;
+  std::string file_;
+};
+
+/// A kernel whose arguments are checked by the compiler: buffers by reference, scalars and structs by value.
+template <class... Args>
+class Kernel {
+ public:
+  Kernel() = default;
+  Kernel(const Program& program, const char* name) : handle_(program.kernel(name)), name_(name) {}
+
+  /// Enqueues global work-items in groups of local; the queue is in order, `waits` adds events of other queues.
+  void enqueue(Queue& queue, Range global, Range local, const Args&... args, std::span<const cl_event> waits = {},
+               EventHandle* done = nullptr) {
+    cl_uint index = 0;
+    (set(index++, args), ...);
+    const std::size_t groups_x = (global.x + local.x - 1) / local.x, groups_y = (global.y + local.y - 1) / local.y;
+    if (groups_x == 0 || groups_y == 0) return;
+    const std::size_t global_size[2] = {groups_x * local.x, groups_y * local.y};
+    const std::size_t local_size[2] = {local.x, local.y};
+    cl_event event = nullptr;
+    check(clEnqueueNDRangeKernel(queue.get(), handle_.get(), 2, nullptr, global_size, local_size,
+                                 static_cast<cl_uint>(waits.size()), waits.empty() ? nullptr : waits.data(),
+                                 done ? &event : nullptr),
+          name_);
+    if (done) *done = EventHandle(event);
+  }
+
+ private:
+  template <class T>
+  void set(cl_uint index, const Buffer<T>& buffer) {
+    const cl_mem memory = buffer.get();
+    check(clSetKernelArg(handle_.get(), index, sizeof(cl_mem), &memory), name_);
+  }
+  template <class T>
+    requires std::is_trivially_copyable_v<T>
+  void set(cl_uint index, const T& value) {
+    check(clSetKernelArg(handle_.get(), index, sizeof(T), &value), name_);
+  }
+
+  KernelHandle handle_;
+  const char* name_ = "";
+};
+
+/// -D integers that fix a program's structure; a kernel file that lacks one of its own stops with #error.
+struct Define {
+  std::string name;
+  long value;
+};
+
+class Session {
+ public:
+  explicit Session(const DeviceChoice& choice);
+  cl_context context() const { return context_.get(); }
+  const DeviceInfo& device() const { return device_; }
+  /// Rays and views run here, the solvers' sweeps on the other.
+  Queue& march_queue() { return *march_; }
+  Queue& lattice_queue() { return *lattice_; }
+
+  /// Builds kernels/<file> with the given integers. Throws DeviceError with the compiler's log.
+  Program build(const std::string& file, const std::vector<Define>& defines) const;
+
+  template <class T>
+  Buffer<T> allocate(std::size_t count) const {
+    require_memory(count * sizeof(T));
+    return Buffer<T>(context(), count);
+  }
+  template <class T>
+  Buffer<T> upload(std::span<const T> values) {
+    Buffer<T> buffer = allocate<T>(values.size());
+    write(*march_, buffer, values);
+    return buffer;
+  }
+  template <class T>
+  Buffer<T> upload(const std::vector<T>& values) {
+    return upload(std::span<const T>(values));
+  }
+  template <class T>
+  Buffer<T> zeros(std::size_t count) {
+    Buffer<T> buffer = allocate<T>(count);
+    fill_zero(*march_, buffer);
+    march_->finish();
+    return buffer;
+  }
+  /// Blocking copies.
+  template <class T>
+  void write(Queue& queue, Buffer<T>& buffer, std::span<const T> values) {
+    if (values.empty()) return;
+    check(clEnqueueWriteBuffer(queue.get(), buffer.get(), CL_TRUE, 0, values.size_bytes(), values.data(), 0, nullptr,
+                               nullptr),
+          "writing to the device");
+  }
+  template <class T>
+  void read(Queue& queue, const Buffer<T>& buffer, std::span<T> values) {
+    if (values.empty()) return;
+    check(clEnqueueReadBuffer(queue.get(), buffer.get(), CL_TRUE, 0, values.size_bytes(), values.data(), 0, nullptr,
+                              nullptr),
+          "reading from the device");
+  }
+  template <class T>
+  std::vector<T> read(Queue& queue, const Buffer<T>& buffer) {
+    std::vector<T> values(buffer.count());
+    read(queue, buffer, std::span<T>(values));
+    return values;
+  }
+  template <class T>
+  void fill_zero(Queue& queue, Buffer<T>& buffer) {
+    if (buffer.count() == 0) return;
+    const cl_uchar zero = 0;
+    check(clEnqueueFillBuffer(queue.get(), buffer.get(), &zero, 1, 0, buffer.bytes(), 0, nullptr, nullptr),
+          "clearing device memory");
+  }
+
+ private:
+  void require_memory(std::size_t bytes) const;
+
+  DeviceInfo device_;
+  ContextHandle context_;
+  std::unique_ptr<Queue> march_, lattice_;
+};
+
+}  // namespace turbid::cl

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a scene is computed: plain numbers with defaults, units and valid ranges, passed whole to the stage they belong to.
+#pragma once
+#include <cstdint>
+#include <string>
+
+namespace turbid {
+
+struct MarchSettings {
+  float step_in_voxels = 0.5f;      ///< arc length of one step / voxel size [-], in (0, 2]
+  float rays_per_face = 2.0f;       ///< light rays per voxel face where they enter [-], in (0, 64]
+  int max_steps = 4096;             ///< a ray still inside after this many steps is reported as in flight; >= 1
+  int batch_steps = 256;            ///< steps k of one batch (Bernabei et al. III-B); >= 1
+  int max_bounces = 16;             ///< interfaces that one path may meet; what is left then is reported as in flight
+  float min_power = 1e-4f;          ///< a branch weaker than this fraction of its ray's first power ends [-], in [0, 0.1]
+};
+
+enum class CollisionVariant { paper, exponential, trapezoid, trt };
+
+struct LatticeSettings {
+  CollisionVariant collision = CollisionVariant::trt;
+  int block_edge = 8;               ///< 4 or 8 voxels
+  int inner_iterations = 8;         ///< steps m inside a block between two exchanges of interfaces; >= 1
+  int sweeps_per_batch = 4;         ///< exchanges while the next batch of rays marches; >= 0
+  int max_sweeps = 20000;           ///< exchanges at the most; >= 1
+  float tolerance = 1e-4f;          ///< estimated relative error of the fluence, in [1e-6, 0.1]
+};
+
+struct SteadySettings {
+  float tolerance = 1e-4f;          ///< estimated relative error in the energy norm, in [1e-6, 0.1]
+  int max_iterations = 60;          ///< conjugate-gradient steps at the most; >= 1
+  int smoothing_sweeps = 2;         ///< red-black sweeps per block with frozen interface; 1..8
+};
+
+struct ViewSettings {
+  float step_in_voxels = 0.5f;      ///< arc length of one gathering step / voxel size [-], in (0, 1]
+  int max_steps = 4096;             ///< steps of one view path; >= 1
+  int max_branches = 8;             ///< interfaces followed per pixel sample, brightest first; 1..15
+  float min_weight = 0.003f;        ///< a branch that carries less than this fraction of the pixel ends [-], in [0, 0.1]
+};
+
+struct SolverSettings {
+  std::string solver = "steady";    ///< "steady" or "lattice"
+  MarchSettings march;
+  LatticeSettings lattice;
+  SteadySettings steady;
+  std::uint64_t seed = 0;           ///< offset of the regular ray grid; the same seed gives the same bits
+};
+
+}  // namespace turbid

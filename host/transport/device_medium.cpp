@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+// Medium grids in; tiles of 9^3 nodes and their maps out. A tile exists only where its field is needed.
+#include "host/transport/device_medium.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "host/base/parallel.h"
+
+namespace turbid {
+namespace {
+
+constexpr int kTileEdge = TURBID_TILE_EDGE;
+constexpr int kTileNodes = TURBID_TILE_NODES;
+constexpr int kHaloEdge = kTileEdge + 2;  // one node more on each side, for central differences
+
+glm::ivec3 block_coordinates(int block, glm::ivec3 blocks) {
+  return {block % blocks.x, (block / blocks.x) % blocks.y, block / (blocks.x * blocks.y)};
+}
+
+/// (gradient, value) per node from values with a halo of one node.
+void with_gradient(const std::vector<float>& halo, float* out) {
+  auto at = [&](int x, int y, int z) { return halo[x + kHaloEdge * (y + kHaloEdge * z)]; };
+  for (int z = 1; z <= kTileEdge; ++z) {
+    for (int y = 1; y <= kTileEdge; ++y) {
+      for (int x = 1; x <= kTileEdge; ++x, out += 4) {
+        out[0] = 0.5f * (at(x + 1, y, z) - at(x - 1, y, z));
+        out[1] = 0.5f * (at(x, y + 1, z) - at(x, y - 1, z));
+        out[2] = 0.5f * (at(x, y, z + 1) - at(x, y, z - 1));
+        out[3] = at(x, y, z);
+      }
+    }
+  }
+}
+
+/// Collects the tile maps of all sets and numbers the tiles of each kind.
+class TileMaps {
+ public:
+  explicit TileMaps(int blocks) : blocks_(blocks) {}
+  /// A new set; state[block]: TURBID_TILE_OUTSIDE, TURBID_TILE_INSIDE, or anything >= 0 to get the next tile number.
+  int add(std::vector<int> state, int* next_tile) {
+    for (int& entry : state) {
+      if (entry >= 0) entry = (*next_tile)++;
+    }
+    map_.insert(map_.end(), state.begin(), state.end());
+    return sets_++;
+  }
+  std::vector<int> take() {
+    if (map_.empty()) map_.assign(blocks_, TURBID_TILE_OUTSIDE);
+    return std::move(map_);
+  }
+  int tile(int set, int block) const { return map_[static_cast<std::size_t>(set) * blocks_ + block]; }
+
+ private:
+  int blocks_;
+  int sets_ = 0;
+  std::vector<int> map_;
+};
+
+/// For every block whether body r's surface may pass through it: by trilinear interpolation exactly where both signs occur.
+std::vector<int> classify(const MediumVolume& medium, int r) {
+  const glm::ivec3 blocks = medium.frame().blocks();
+  std::vector<int> state(blocks.x * blocks.y * blocks.z, TURBID_TILE_OUTSIDE);
+  parallel_ranges(static_cast<int>(state.size()), [&](int begin, int end) {
+    std::vector<float> nodes(kTileNodes);
+    for (int block = begin; block < end; ++block) {
+      medium.read_signed_distance(r, 8 * block_coordinates(block, blocks), glm::ivec3(kTileEdge), nodes);
+      const auto [low, high] = std::minmax_element(nodes.begin(), nodes.end());
+      state[block] = *low >= 0.0f ? TURBID_TILE_OUTSIDE : *high < 0.0f ? TURBID_TILE_INSIDE : 0;
+    }
+  });
+  return state;
+}
+
+/// Blocks in which region r may own a point.
+std::vector<int> presence(int r, const std::vector<std::vector<int>>& body_state, int blocks) {
+  std::vector<int> result(blocks, TURBID_TILE_OUTSIDE);
+  for (int block = 0; block < blocks; ++block) {
+    bool present = r == 0 || body_state[r][block] != TURBID_TILE_OUTSIDE;
+    for (std::size_t higher = r + 1; higher < body_state.size(); ++higher) {
+      if (body_state[higher][block] == TURBID_TILE_INSIDE) present = false;
+    }
+    if (present) result[block] = 0;
+  }
+  return result;
+}
+
+std::vector<int> only_region(const std::vector<std::vector<int>>& body_state, int blocks) {
+  std::vector<int> result(blocks, 0);
+  for (int block = 0; block < blocks; ++block) {
+    for (int r = static_cast<int>(body_state.size()) - 1; r >= 1; --r) {
+      if (body_state[r][block] == TURBID_TILE_OUTSIDE) continue;
+      result[block] = body_state[r][block] == TURBID_TILE_INSIDE ? r : TURBID_MIXED_BLOCK;
+      break;
+    }
+  }
+  return result;
+}
+
+/// Calls fill(block, tile) for every block of the set that has a tile.
+template <class Fill>
+void for_each_tile(const TileMaps& maps, int set, int blocks, const Fill& fill) {
+  parallel_ranges(blocks, [&](int begin, int end) {
+    for (int block = begin; block < end; ++block) {
+      if (const int tile = maps.tile(set, block); tile >= 0) fill(block, tile);
+    }
+  });
+}
+
+void copy(const glm::vec3& from, float (&to)[3]) {
+  for (int i = 0; i < 3; ++i) to[i] = from[i];
+}
+
+}  // namespace
+
+std::size_t DeviceMedium::bytes() const {
+  return regions_buffer.bytes() + tile_map_buffer.bytes() + block_region_buffer.bytes() + distance_tiles.bytes() +
+         index_tiles.bytes() + coefficient_tiles.bytes();
+}
+
+std::vector<cl::Define> DeviceMedium::defines() const {
+  return {{"TURBID_CHANNELS", features.channels},
+          {"TURBID_BODIES", features.bodies},
+          {"TURBID_GRADED", features.graded_index},
+          {"TURBID_HETEROGENEOUS", features.heterogeneous},
+          {"TURBID_SCATTERING", features.scattering},
+          {"TURBID_VOXELS_X", frame.voxels.x},
+          {"TURBID_VOXELS_Y", frame.voxels.y},
+          {"TURBID_VOXELS_Z", frame.voxels.z}};
+}
+
+DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, const SceneFeatures& features) {
+  DeviceMedium device;
+  device.frame = medium.frame();
+  device.features = features;
+  const glm::ivec3 blocks = device.frame.blocks();
+  const int block_count = device.block_count();
+  const int regions = medium.region_count();
+  const float h = device.frame.voxel_size;
+  TileMaps maps(block_count);
+  std::vector<std::vector<int>> body_state(regions);
+  for (int r = 1; r < regions; ++r) body_state[r] = classify(medium, r);
+  device.block_region = only_region(body_state, block_count);
+  device.region_params.resize(regions);
+
+  // Signed distances.
+  int distance_tiles = 0;
+  for (int r = 0; r < regions; ++r) {
+    device.region_params[r].distance_set = r == 0 ? -1 : maps.add(body_state[r], &distance_tiles);
+  }
+  std::vector<float> distances(static_cast<std::size_t>(distance_tiles) * kTileNodes * 4);
+  for (int r = 1; r < regions; ++r) {
+    for_each_tile(maps, device.region_params[r].distance_set, block_count, [&](int block, int tile) {
+      std::vector<float> halo(kHaloEdge * kHaloEdge * kHaloEdge);
+      medium.read_signed_distance(r, 8 * block_coordinates(block, blocks) - 1, glm::ivec3(kHaloEdge), halo);
+      with_gradient(halo, distances.data() + static_cast<std::size_t>(tile) * kTileNodes * 4);
+    });
+  }
+
+  // Graded indices: one set for each region with its own field, one for the whole smooth group.
+  int index_tiles = 0, smooth_set = -1;
+  std::vector<std::pair<int, int>> index_sets;  // (region that reads it, set)
+  for (int r = 0; r < regions; ++r) {
+    const Region& region = medium.region(r);
+    RegionParams& params = device.region_params[r];
+    params.smooth_group = region.smooth_surface;
+    params.index_set = -1;
+    if (!region.graded_index) continue;
+    if (region.smooth_surface && smooth_set >= 0) {
+      params.index_set = smooth_set;
+      continue;
+    }
+    std::vector<int> present = presence(r, body_state, block_count);
+    if (region.smooth_surface) {
+      // The blurred field: wherever it differs from the ambient's constant.
+      std::fill(present.begin(), present.end(), 0);
+      const float ambient = medium.region(0).eta;
+      parallel_ranges(block_count, [&](int begin, int end) {
+        std::vector<float> halo(kHaloEdge * kHaloEdge * kHaloEdge);
+        for (int block = begin; block < end; ++block) {
+          medium.read_eta(r, 8 * block_coordinates(block, blocks) - 1, glm::ivec3(kHaloEdge), halo);
+          const bool flat = std::all_of(halo.begin(), halo.end(), [&](float eta) { return eta == ambient; });
+          if (flat) present[block] = TURBID_TILE_OUTSIDE;
+        }
+      });
+    }
+    params.index_set = maps.add(std::move(present), &index_tiles);
+    if (region.smooth_surface) smooth_set = params.index_set;
+    index_sets.emplace_back(r, params.index_set);
+  }
+  std::vector<float> indices(static_cast<std::size_t>(index_tiles) * kTileNodes * 4);
+  for (const auto& [r, set] : index_sets) {
+    for_each_tile(maps, set, block_count, [&, reader = r](int block, int tile) {
+      std::vector<float> halo(kHaloEdge * kHaloEdge * kHaloEdge);
+      medium.read_eta(reader, 8 * block_coordinates(block, blocks) - 1, glm::ivec3(kHaloEdge), halo);
+      for (float& eta : halo) eta = 0.5f * eta * eta;
+      with_gradient(halo, indices.data() + static_cast<std::size_t>(tile) * kTileNodes * 4);
+    });
+  }
+
+  // Varying coefficients, per voxel edge.
+  const int width = features.channels == 3 ? 8 : 2, half = width / 2;
+  int coefficient_tiles = 0;
+  for (int r = 0; r < regions; ++r) {
+    device.region_params[r].coefficient_set =
+        medium.region(r).heterogeneous ? maps.add(presence(r, body_state, block_count), &coefficient_tiles) : -1;
+  }
+  std::vector<float> coefficients(static_cast<std::size_t>(coefficient_tiles) * kTileNodes * width);
+  for (int r = 0; r < regions; ++r) {
+    const int set = device.region_params[r].coefficient_set;
+    if (set < 0) continue;
+    for_each_tile(maps, set, block_count, [&](int block, int tile) {
+      std::vector<Coefficients> nodes(kTileNodes);
+      medium.read_coefficients(r, 8 * block_coordinates(block, blocks), glm::ivec3(kTileEdge), nodes);
+      float* out = coefficients.data() + static_cast<std::size_t>(tile) * kTileNodes * width;
+      for (const Coefficients& node : nodes) {
+        const glm::vec3 sigma_s = delta_scaled(node.sigma_s, node.g) * h, sigma_a = node.sigma_a * h;
+        for (int c = 0; c < features.channels; ++c) {
+          out[c] = sigma_s[c];
+          out[half + c] = sigma_a[c];
+        }
+        out += width;
+      }
+    });
+  }
+
+  // Where light may be scattered.
+  int source_tiles = 0;
+  for (int r = 0; r < regions; ++r) {
+    device.region_params[r].source_set = -1;
+    if (!medium.region(r).participates()) continue;
+    const std::vector<int> present = presence(r, body_state, block_count);
+    for (int block = 0; block < block_count; ++block) {
+      if (present[block] >= 0) device.source_tiles.push_back({r, block_coordinates(block, blocks)});
+    }
+    device.region_params[r].source_set = maps.add(present, &source_tiles);
+  }
+  device.tile_map = maps.take();
+
+  // Region constants.
+  for (int r = 0; r < regions; ++r) {
+    const Region& region = medium.region(r);
+    RegionParams& params = device.region_params[r];
+    params.eta = region.eta;
+    params.opaque = region.opaque;
+    params.attenuates = !region.opaque && (region.scatters || region.absorbs);
+    copy(delta_scaled(region.sigma_s, region.g) * h, params.sigma_s);
+    copy(region.sigma_a * h, params.sigma_a);
+    copy(region.reflectance, params.reflectance);
+    copy(region.reflectance2, params.reflectance2);
+    params.checker_size = region.checker_size / h;
+    float eta_max = region.eta;
+    const int set = region.graded_index ? params.index_set : -1;
+    if (set >= 0) {
+      for (int block = 0; block < block_count; ++block) {
+        const int tile = device.tile_map[static_cast<std::size_t>(set) * block_count + block];
+        if (tile < 0) continue;
+        const float* node = indices.data() + static_cast<std::size_t>(tile) * kTileNodes * 4;
+        for (int i = 0; i < kTileNodes; ++i) eta_max = std::max(eta_max, std::sqrt(2.0f * node[4 * i + 3]));
+      }
+    }
+    params.tau_per_arc = 1.0f / eta_max;
+  }
+
+  device.regions_buffer = session.upload(device.region_params);
+  device.tile_map_buffer = session.upload(device.tile_map);
+  device.block_region_buffer = session.upload(device.block_region);
+  device.distance_tiles = session.upload(distances);
+  device.index_tiles = session.upload(indices);
+  device.coefficient_tiles = session.upload(coefficients);
+  return device;
+}
+
+}  // namespace turbid

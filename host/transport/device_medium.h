@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The medium as the ray kernels read it: regions, tile maps and tiles (kernels/shared/medium_params.h) on the device.
+#pragma once
+#include <vector>
+
+#include "host/cl/session.h"
+#include "host/scene/features.h"
+#include "kernels/shared/medium_params.h"
+#include "volumes/medium_volume.h"
+
+namespace turbid {
+
+/// A tile of cells in which one region may scatter.
+struct SourceTile {
+  int region;
+  glm::ivec3 block;
+};
+
+struct DeviceMedium {
+  GridFrame frame;
+  SceneFeatures features;
+  std::vector<RegionParams> region_params;
+  std::vector<int> tile_map;             ///< [set][block]
+  std::vector<int> block_region;         ///< [block]
+  std::vector<SourceTile> source_tiles;  ///< in the order of their numbers in the tile map
+
+  cl::Buffer<RegionParams> regions_buffer;
+  cl::Buffer<int> tile_map_buffer, block_region_buffer;
+  cl::Buffer<float> distance_tiles, index_tiles, coefficient_tiles;
+
+  int block_count() const { return frame.blocks().x * frame.blocks().y * frame.blocks().z; }
+  std::size_t bytes() const;
+  /// The mandatory -D integers of every program that traces rays.
+  std::vector<cl::Define> defines() const;
+};
+
+/// Cuts the medium into tiles and uploads them.
+DeviceMedium upload_medium(cl::Session&, const MediumVolume&, const SceneFeatures&);
+
+/// First-flight coefficients of forward scattering: the delta-Eddington share f = g^2 counts as not scattered
+/// (Joseph, Wiscombe and Weinman 1976): sigma_s* = (1 - g^2) sigma_s.
+inline glm::vec3 delta_scaled(glm::vec3 sigma_s, float g) { return sigma_s * (1.0f - g * g); }
+
+}  // namespace turbid

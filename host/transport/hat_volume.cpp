@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Supersamples the cells that surfaces cut; cells that lie wholly inside count an eighth for each corner.
+#include "host/transport/hat_volume.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/base/parallel.h"
+
+namespace turbid {
+namespace {
+
+constexpr int kEdge = 8, kVoxels = 512;
+constexpr int kNodes = kEdge + 2;   // a block's voxels with one more on each side
+constexpr int kSamples = 4;         // per cell and axis
+
+/// Distances of all bodies at the nodes around one block.
+struct Nodes {
+  std::vector<std::vector<float>> body;  // [body][node]
+  static int index(int x, int y, int z) { return x + kNodes * (y + kNodes * z); }
+};
+
+float trilinear(const std::vector<float>& values, int corner, float fx, float fy, float fz) {
+  auto row = [&](int at) { return values[at] + fx * (values[at + 1] - values[at]); };
+  auto plane = [&](int at) { return row(at) + fy * (row(at + kNodes) - row(at)); };
+  return plane(corner) + fz * (plane(corner + kNodes * kNodes) - plane(corner));
+}
+
+int region_at(const Nodes& nodes, int corner, float fx, float fy, float fz) {
+  for (int r = static_cast<int>(nodes.body.size()) - 1; r >= 1; --r) {
+    if (trilinear(nodes.body[r], corner, fx, fy, fz) < 0.0f) return r;
+  }
+  return 0;
+}
+
+/// True if every corner of the cell has one sign for every body: one region fills the cell.
+bool uniform(const Nodes& nodes, int corner) {
+  for (std::size_t r = 1; r < nodes.body.size(); ++r) {
+    const std::vector<float>& d = nodes.body[r];
+    const bool inside = d[corner] < 0.0f;
+    for (int k = 1; k < 8; ++k) {
+      const int at = corner + (k & 1) + kNodes * ((k >> 1 & 1) + kNodes * (k >> 2));
+      if ((d[at] < 0.0f) != inside) return false;
+    }
+  }
+  return true;
+}
+
+void fill_block(const MediumVolume& medium, const DiffusionMedium& diffusion, int block, float* out) {
+  const glm::ivec3 lower = kEdge * diffusion.blocks.coordinates(block);
+  Nodes nodes;
+  nodes.body.resize(medium.region_count());
+  bool mixed = false;
+  for (int r = 1; r < medium.region_count(); ++r) {
+    nodes.body[r].resize(kNodes * kNodes * kNodes);
+    medium.read_signed_distance(r, lower - 1, glm::ivec3(kNodes), nodes.body[r]);
+    const auto [low, high] = std::minmax_element(nodes.body[r].begin(), nodes.body[r].end());
+    mixed |= *low < 0.0f && *high >= 0.0f;
+  }
+  const std::int16_t* region = diffusion.region.data() + block * std::size_t{kVoxels};
+  if (!mixed) {
+    for (int v = 0; v < kVoxels; ++v) out[v] = 1.0f;
+    return;
+  }
+  auto add = [&](int x, int y, int z, int r, float weight) {
+    if (x < 0 || y < 0 || z < 0 || x >= kEdge || y >= kEdge || z >= kEdge) return;
+    const int v = x + kEdge * (y + kEdge * z);
+    if (region[v] == r) out[v] += weight;
+  };
+  std::fill(out, out + kVoxels, 0.0f);
+  for (int z = -1; z < kEdge; ++z) {
+    for (int y = -1; y < kEdge; ++y) {
+      for (int x = -1; x < kEdge; ++x) {
+        const int corner = Nodes::index(x + 1, y + 1, z + 1);
+        if (uniform(nodes, corner)) {
+          const int r = region_at(nodes, corner, 0, 0, 0);
+          for (int k = 0; k < 8; ++k) add(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2), r, 0.125f);
+          continue;
+        }
+        constexpr float kWeight = 1.0f / (kSamples * kSamples * kSamples);
+        for (int i = 0; i < kSamples * kSamples * kSamples; ++i) {
+          const float fx = (i % kSamples + 0.5f) / kSamples, fy = (i / kSamples % kSamples + 0.5f) / kSamples,
+                      fz = (i / (kSamples * kSamples) + 0.5f) / kSamples;
+          const int r = region_at(nodes, corner, fx, fy, fz);
+          for (int k = 0; k < 8; ++k) {
+            const float w = (k & 1 ? fx : 1 - fx) * (k & 2 ? fy : 1 - fy) * (k & 4 ? fz : 1 - fz);
+            add(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2), r, kWeight * w);
+          }
+        }
+      }
+    }
+  }
+  for (int v = 0; v < kVoxels; ++v) out[v] = std::max(out[v], 0.02f);
+}
+
+}  // namespace
+
+std::vector<float> hat_volumes(const MediumVolume& medium, const DiffusionMedium& diffusion) {
+  std::vector<float> result(diffusion.stride());
+  parallel_ranges(diffusion.blocks.count(), [&](int begin, int end) {
+    for (int block = begin; block < end; ++block) {
+      fill_block(medium, diffusion, block, result.data() + block * std::size_t{kVoxels});
+    }
+  });
+  return result;
+}
+
+}  // namespace turbid

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much of its region each voxel's trilinear weight covers, so that deposits near a surface turn into densities.
+#pragma once
+#include <vector>
+
+#include "host/transport/diffusion_medium.h"
+
+namespace turbid {
+
+/// [block][voxel]: integral over the voxel's own region of its trilinear (hat) weight, in voxels; 1 away from surfaces, in
+/// [0.02, 1] near them. Power spread with these weights divided by them is a power density without a staircase.
+std::vector<float> hat_volumes(const MediumVolume&, const DiffusionMedium&);
+
+}  // namespace turbid

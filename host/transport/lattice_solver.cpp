@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Composes the two queues. The number of sweeps per batch is fixed, so the result does not depend on which queue is faster.
+#include "host/transport/lattice_solver.h"
+
+#include <algorithm>
+
+namespace turbid {
+
+void LatticeSolver::prepare_diffusion(const DiffusionMedium& medium) {
+  lattice_.emplace(context_.session, medium, context_.settings.lattice);
+}
+
+void LatticeSolver::march_all(March& march) {
+  if (!lattice_) return MarchingSolver::march_all(march);
+  lattice_->reset();
+  while (march.rays_left() > 0) {
+    march.enqueue_batch();
+    // Transport is linear: what batch i left may relax while batch i + 1 is under way.
+    if (march.batches() > 1) lattice_->enqueue_sweeps(context_.settings.lattice.sweeps_per_batch);
+    march.finish_batch();
+    context_.session.lattice_queue().finish();
+    if (march.rays_left() > 0) {
+      const LightSource so_far =
+          gather_source(march.read_deposit(), march.watts_per_unit(), device_medium(), diffusion_medium());
+      lattice_->set_source(so_far.power);
+    }
+    context_.progress.update(1.0 - static_cast<double>(march.rays_left()) / static_cast<double>(std::max<std::size_t>(first_ray_count_, 1)));
+  }
+}
+
+DiffuseLight LatticeSolver::diffuse(const LightSource& source) {
+  lattice_->set_source(source.power);
+  DiffuseLight light;
+  light.error_estimate = lattice_->relax([&](double fraction) { context_.progress.update(fraction); });
+  light.iterations = lattice_->sweeps();
+  light.fluence = lattice_->read_fluence();
+  const LatticeEnergy energy = lattice_->read_energy();
+  light.absorbed = energy.absorbed;
+  light.escaped = energy.escaped;
+  light.stored = energy.stored;
+  return light;
+}
+
+}  // namespace turbid

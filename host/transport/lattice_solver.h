@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// The paper's scheme: batches of rays march on one queue while the lattice relaxes the earlier batches' deposits on another.
+#pragma once
+#include "host/transport/lattice.h"
+#include "host/transport/marching_solver.h"
+
+namespace turbid {
+
+class LatticeSolver final : public MarchingSolver {
+ public:
+  using MarchingSolver::MarchingSolver;
+
+ protected:
+  const char* name() const override { return "lattice"; }
+  void prepare_diffusion(const DiffusionMedium&) override;
+  void march_all(March&) override;
+  DiffuseLight diffuse(const LightSource&) override;
+
+ private:
+  std::optional<Lattice> lattice_;
+};
+
+}  // namespace turbid

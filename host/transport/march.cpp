@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Owns the ray buffers and the fixed-point sums of the marching pass.
+#include "host/transport/march.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace turbid {
+namespace {
+
+constexpr int kGroundTexels = 512;
+constexpr float kGroundReach = 3.0f;  // the collecting map spans this many domain sizes
+
+glm::dvec3 colour_at(const std::vector<std::int64_t>& sums, std::size_t index, double scale) {
+  return {scale * static_cast<double>(sums[index]), scale * static_cast<double>(sums[index + 1]),
+          scale * static_cast<double>(sums[index + 2])};
+}
+
+}  // namespace
+
+March::March(cl::Session& session, const DeviceMedium& medium, const MarchSettings& settings,
+             const std::array<FaceBoundary, 6>& faces, const Surroundings& surroundings)
+    : session_(session), medium_(medium), settings_(settings) {
+  program_ = session.build("march.cl", medium.defines());
+  kernel_ = decltype(kernel_)(program_, "march");
+  params_.step = settings.step_in_voxels;
+  params_.batch_steps = settings.batch_steps;
+  params_.max_steps = settings.max_steps;
+  params_.max_bounces = settings.max_bounces;
+  for (int face = 0; face < 6; ++face) params_.faces[face] = static_cast<int>(faces[face]);
+  if (surroundings.ground) {
+    const GridFrame& frame = medium.frame;
+    const float extent = kGroundReach * std::max({frame.size().x, frame.size().y, frame.size().z}) / frame.voxel_size;
+    const glm::vec2 centre = 0.5f * glm::vec2(frame.voxels.x, frame.voxels.z);
+    params_.ground = 1;
+    params_.ground_height = (surroundings.ground->height - frame.origin.y) / frame.voxel_size;
+    params_.ground_size = kGroundTexels;
+    params_.ground_texel = extent / kGroundTexels;
+    params_.ground_origin[0] = centre.x - 0.5f * extent;
+    params_.ground_origin[1] = centre.y - 0.5f * extent;
+  }
+  const std::size_t channels = medium.features.channels;
+  deposit_ = session.allocate<std::int64_t>(medium.source_tiles.size() * TURBID_TILE_NODES * channels);
+  tallies_ = session.allocate<std::int64_t>(3 * TURBID_TALLY_COUNT);
+  ground_ = session.allocate<std::int64_t>(params_.ground ? kGroundTexels * kGroundTexels * channels : 0);
+  next_count_ = session.allocate<int>(1);
+}
+
+void March::reserve(std::size_t rays) {
+  // A ray leaves at most two per batch: itself and one branch.
+  if (next_.count() < 2 * rays) next_ = session_.allocate<RayState>(2 * rays);
+}
+
+void March::start(const LightRays& light) {
+  double largest = 0;
+  for (int c = 0; c < 3; ++c) largest = std::max(largest, light.emitted[c]);
+  // No sum can exceed what is emitted: 2^60 units leave two bits of headroom in 64-bit integers.
+  fixed_per_watt_ = std::exp2(std::floor(60.0 - std::log2(std::max(largest, 1e-30))));
+  params_.fixed_per_watt = static_cast<float>(fixed_per_watt_);
+  ray_count_ = light.rays.size();
+  batches_ = 0;
+  if (rays_.count() < ray_count_) rays_ = session_.allocate<RayState>(ray_count_);
+  session_.write(session_.march_queue(), rays_, std::span<const RayState>(light.rays));
+  session_.fill_zero(session_.march_queue(), deposit_);
+  session_.fill_zero(session_.march_queue(), tallies_);
+  session_.fill_zero(session_.march_queue(), ground_);
+}
+
+void March::enqueue_batch() {
+  cl::Queue& queue = session_.march_queue();
+  reserve(ray_count_);
+  session_.fill_zero(queue, next_count_);
+  params_.ray_count = static_cast<int>(ray_count_);
+  kernel_.enqueue(queue, {ray_count_}, {64}, medium_.regions_buffer, medium_.tile_map_buffer,
+                  medium_.block_region_buffer, medium_.distance_tiles, medium_.index_tiles, medium_.coefficient_tiles,
+                  params_, rays_, next_, next_count_, deposit_, tallies_, ground_);
+  cl::check(clFlush(queue.get()), "starting the march");
+}
+
+bool March::finish_batch() {
+  ray_count_ = static_cast<std::size_t>(session_.read(session_.march_queue(), next_count_)[0]);
+  std::swap(rays_, next_);
+  ++batches_;
+  return ray_count_ > 0;
+}
+
+std::vector<std::int64_t> March::read_deposit() { return session_.read(session_.march_queue(), deposit_); }
+
+MarchTallies March::read_tallies() {
+  const std::vector<std::int64_t> sums = session_.read(session_.march_queue(), tallies_);
+  const double scale = watts_per_unit();
+  MarchTallies result;
+  result.absorbed = colour_at(sums, 3 * TURBID_TALLY_ABSORBED, scale);
+  result.deposited = colour_at(sums, 3 * TURBID_TALLY_DEPOSITED, scale);
+  result.reflected = colour_at(sums, 3 * TURBID_TALLY_REFLECTED, scale);
+  result.opaque = colour_at(sums, 3 * TURBID_TALLY_OPAQUE, scale);
+  result.in_flight = colour_at(sums, 3 * TURBID_TALLY_IN_FLIGHT, scale);
+  for (int face = 0; face < 6; ++face) {
+    result.escaped[face] = colour_at(sums, 3 * (TURBID_TALLY_ESCAPED + face), scale);
+  }
+  return result;
+}
+
+GroundLight March::read_ground() {
+  GroundLight ground;
+  if (!params_.ground) return ground;
+  const GridFrame& frame = medium_.frame;
+  const std::vector<std::int64_t> sums = session_.read(session_.march_queue(), ground_);
+  ground.size = params_.ground_size;
+  ground.texel = params_.ground_texel * frame.voxel_size;
+  ground.origin = glm::vec2(frame.origin.x, frame.origin.z) +
+                  frame.voxel_size * glm::vec2(params_.ground_origin[0], params_.ground_origin[1]);
+  const double scale = watts_per_unit() / (static_cast<double>(ground.texel) * ground.texel);
+  const int channels = medium_.features.channels;
+  ground.irradiance.resize(static_cast<std::size_t>(ground.size) * ground.size);
+  for (std::size_t i = 0; i < ground.irradiance.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const int source = channels == 3 ? c : 0;
+      const double value = scale * static_cast<double>(sums[i * channels + source]);
+      ground.irradiance[i][c] = static_cast<float>(channels == 3 ? value : value * medium_.features.tint[c]);
+    }
+  }
+  return ground;
+}
+
+}  // namespace turbid

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs the marching pass: batches of rays until none is left, deposits and tallies in fixed point.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "host/transport/device_medium.h"
+#include "host/transport/light_rays.h"
+
+namespace turbid {
+
+/// What the marching pass leaves, in watts per channel.
+struct MarchTallies {
+  glm::dvec3 absorbed{0}, deposited{0}, reflected{0}, opaque{0}, in_flight{0};
+  std::array<glm::dvec3, 6> escaped{};
+};
+
+class March {
+ public:
+  March(cl::Session&, const DeviceMedium&, const MarchSettings&, const std::array<FaceBoundary, 6>& faces,
+        const Surroundings&);
+
+  /// Forgets earlier light and loads the rays.
+  void start(const LightRays&);
+  /// Enqueues one batch of steps on the march queue and returns at once; only while rays are left.
+  void enqueue_batch();
+  /// Waits for the batch and learns how many rays go on; false when none is left.
+  bool finish_batch();
+  std::size_t rays_left() const { return ray_count_; }
+  int batches() const { return batches_; }
+
+  /// Deposits in watts on the nodes of the source tiles: [tile][node][channel].
+  std::vector<std::int64_t> read_deposit();
+  double watts_per_unit() const { return 1.0 / fixed_per_watt_; }
+  MarchTallies read_tallies();
+  GroundLight read_ground();
+
+ private:
+  void reserve(std::size_t rays);
+
+  cl::Session& session_;
+  const DeviceMedium& medium_;
+  MarchSettings settings_;
+  MarchParams params_{};
+  cl::Program program_;
+  cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>,
+             cl::Buffer<float>, MarchParams, cl::Buffer<RayState>, cl::Buffer<RayState>, cl::Buffer<int>,
+             cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>>
+      kernel_;
+  cl::Buffer<RayState> rays_, next_;
+  cl::Buffer<int> next_count_;
+  cl::Buffer<std::int64_t> deposit_, tallies_, ground_;
+  std::size_t ray_count_ = 0;
+  int batches_ = 0;
+  double fixed_per_watt_ = 1;
+};
+
+}  // namespace turbid

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Order of the stages and the energy balance of the deterministic solvers.
+#include "host/transport/marching_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace turbid {
+
+double EnergyBalance::imbalance() const {
+  double worst = 0;
+  const glm::dvec3 rest = missed + reflected + absorbed + absorbed_opaque + escaped + in_flight;
+  for (int c = 0; c < 3; ++c) {
+    if (emitted[c] > 0) worst = std::max(worst, std::abs(emitted[c] - rest[c]) / emitted[c]);
+  }
+  return worst;
+}
+
+void account(const DiffusionMedium& medium, DiffuseLight& light) {
+  const std::size_t stride = medium.stride();
+  for (int c = 0; c < medium.channels; ++c) {
+    for (std::size_t i = 0; i < stride; ++i) {
+      light.absorbed[c] += static_cast<double>(medium.s_a[c * stride + i]) * light.fluence[c * stride + i];
+    }
+    for (const BoundaryFace& face : medium.boundary) {
+      light.escaped[face.face][c] +=
+          medium.boundary_conductance(face, c) * light.fluence[medium.index(c, face.block, face.voxel)];
+    }
+  }
+}
+
+void MarchingSolver::prepare(const MediumVolume& medium) {
+  medium_ = &medium;
+  march_.reset();
+  context_.progress.stage("upload");
+  device_.emplace(upload_medium(context_.session, medium, context_.features));
+  surfaces_.emplace(entry_surfaces(context_.description, medium));
+  context_.progress.stage("prepare");
+  diffusion_.emplace(make_diffusion_medium(medium, context_.features.channels));
+  march_.emplace(context_.session, *device_, context_.settings.march, medium.faces(), context_.surroundings);
+  if (context_.features.scattering) prepare_diffusion(*diffusion_);
+}
+
+void MarchingSolver::march_all(March& march) {
+  while (march.rays_left() > 0) {
+    march.enqueue_batch();
+    march.finish_batch();
+    context_.progress.update(1.0 - static_cast<double>(march.rays_left()) / static_cast<double>(std::max<std::size_t>(first_ray_count_, 1)));
+  }
+}
+
+LightSolution MarchingSolver::light(const LightList& lights) {
+  const DiffusionMedium& diffusion = *diffusion_;
+  const int channels = diffusion.channels;
+  const std::size_t stride = diffusion.stride();
+  context_.progress.stage("lights");
+  const LightRays rays =
+      start_rays(lights, *medium_, *surfaces_, *device_, context_.settings.march, context_.settings.seed);
+  first_ray_count_ = rays.rays.size();
+  context_.progress.stage("march");
+  march_->start(rays);
+  march_all(*march_);
+
+  context_.progress.stage("diffuse");
+  LightSource source;
+  DiffuseLight diffuse_light;
+  diffuse_light.fluence.assign(stride * channels, 0.0f);
+  if (context_.features.scattering) {
+    source = gather_source(march_->read_deposit(), march_->watts_per_unit(), *device_, diffusion);
+    diffuse_light = diffuse(source);
+  }
+
+  const MarchTallies tallies = march_->read_tallies();
+  LightSolution solution{.volume = {diffusion.frame, diffusion.blocks, {}, {}}, .ground = march_->read_ground(),
+                         .shadows = rays.shadows, .report = {}};
+  SolverReport& report = solution.report;
+  report.solver = name();
+  report.channels = channels;
+  report.rays = rays.rays.size();
+  report.march_batches = march_->batches();
+  report.iterations = diffuse_light.iterations;
+  report.error_estimate = diffuse_light.error_estimate;
+  report.active_blocks = diffusion.blocks.count();
+  report.active_voxels = diffusion.active_voxels;
+  EnergyBalance& energy = report.energy;
+  energy.emitted = rays.emitted + source.emitted;
+  energy.missed = rays.missed;
+  energy.reflected = tallies.reflected;
+  energy.absorbed = tallies.absorbed + diffuse_light.absorbed;
+  energy.absorbed_opaque = rays.absorbed_opaque + tallies.opaque;
+  energy.in_flight = tallies.in_flight + source.unresolved + diffuse_light.stored;
+  for (int face = 0; face < 6; ++face) {
+    energy.escaped_faces[face] = tallies.escaped[face] + diffuse_light.escaped[face];
+    energy.escaped += energy.escaped_faces[face];
+  }
+
+  // To scene units, and from one grey channel to three by the scene's tint.
+  const float h = diffusion.frame.voxel_size;
+  const float to_fluence = 1.0f / (h * h), to_density = 1.0f / (h * h * h);
+  solution.volume.fluence.assign(3 * stride, 0.0f);
+  solution.volume.deposit.assign(3 * stride, 0.0f);
+  const glm::vec3 tint = channels == 3 ? glm::vec3(1) : context_.features.tint;
+  for (int c = 0; c < 3; ++c) {
+    const std::size_t from = channels == 3 ? c : 0;
+    for (std::size_t i = 0; i < stride; ++i) {
+      solution.volume.fluence[c * stride + i] = tint[c] * to_fluence * diffuse_light.fluence[from * stride + i];
+      if (!source.density.empty()) {
+        solution.volume.deposit[c * stride + i] = tint[c] * to_density * source.density[from * stride + i];
+      }
+    }
+  }
+  if (channels == 1) {
+    auto spread = [&](glm::dvec3& value) { value = value.x * glm::dvec3(tint); };
+    for (glm::dvec3* value : {&energy.emitted, &energy.missed, &energy.reflected, &energy.absorbed, &energy.absorbed_opaque,
+                              &energy.in_flight, &energy.escaped}) {
+      spread(*value);
+    }
+    for (glm::dvec3& value : energy.escaped_faces) spread(value);
+  }
+  context_.progress.finish();
+  return solution;
+}
+
+}  // namespace turbid

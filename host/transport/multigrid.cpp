@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// Builds the operators of all levels on the host, one channel after the other.
+#include "host/transport/multigrid.h"
+
+#include <algorithm>
+#include <array>
+
+namespace turbid {
+namespace {
+
+constexpr int kEdge = 8, kVoxels = 512;
+constexpr int kStep[3] = {1, kEdge, kEdge * kEdge};
+
+/// One channel of a level with boundary losses kept apart by face, as coarsening needs them.
+struct Operator {
+  std::array<std::vector<float>, 3> t;
+  std::array<std::vector<float>, 6> boundary;
+  std::vector<float> absorption;
+
+  explicit Operator(std::size_t size) {
+    for (auto& values : t) values.assign(size, 0.0f);
+    for (auto& values : boundary) values.assign(size, 0.0f);
+    absorption.assign(size, 0.0f);
+  }
+};
+
+Operator fine_operator(const DiffusionMedium& medium, const std::vector<float>& conductance, int channel) {
+  const std::size_t stride = medium.stride();
+  Operator fine(stride);
+  for (int axis = 0; axis < 3; ++axis) {
+    const float* from = conductance.data() + (3 * channel + axis) * stride;
+    fine.t[axis].assign(from, from + stride);
+  }
+  for (std::size_t i = 0; i < stride; ++i) {
+    if (medium.region[i] >= 0) fine.absorption[i] = medium.s_a[channel * stride + i] * medium.eta_squared[i];
+  }
+  for (const BoundaryFace& face : medium.boundary) {
+    const std::size_t i = face.block * std::size_t{kVoxels} + face.voxel;
+    fine.boundary[face.face][i] =
+        static_cast<float>(medium.boundary_conductance(face, channel) * medium.eta_squared[i]);
+  }
+  return fine;
+}
+
+BlockGrid coarse_blocks(const BlockGrid& fine) {
+  const glm::ivec3 dimensions = (fine.dimensions() + 1) / 2;
+  std::vector<char> active(dimensions.x * dimensions.y * dimensions.z, 0);
+  for (int block = 0; block < fine.count(); ++block) {
+    const glm::ivec3 at = fine.coordinates(block) / 2;
+    active[at.x + dimensions.x * (at.y + dimensions.y * at.z)] = 1;
+  }
+  return BlockGrid(dimensions, kEdge,
+                   [&](glm::ivec3 b) { return active[b.x + dimensions.x * (b.y + dimensions.y * b.z)] != 0; });
+}
+
+struct CoarseMap {
+  const BlockGrid& fine;
+  const BlockGrid& coarse;
+  VoxelRef of(VoxelRef v) const {
+    const glm::ivec3 block = fine.coordinates(v.block);
+    const glm::ivec3 local(v.voxel % kEdge, (v.voxel / kEdge) % kEdge, v.voxel / (kEdge * kEdge));
+    const glm::ivec3 voxel = (kEdge * block + local) / 2;
+    const glm::ivec3 inside = voxel % kEdge;
+    return {coarse.find(voxel / kEdge), inside.x + kEdge * (inside.y + kEdge * inside.z)};
+  }
+};
+
+std::size_t flat(VoxelRef v) { return v.block * std::size_t{kVoxels} + v.voxel; }
+
+Operator coarsen(const Operator& fine, const BlockGrid& fine_blocks, const BlockGrid& coarse_blocks) {
+  Operator coarse(static_cast<std::size_t>(coarse_blocks.count()) * kVoxels);
+  const CoarseMap map{fine_blocks, coarse_blocks};
+  auto conductance = [&](int axis, VoxelRef v) { return v.block < 0 ? 0.0f : fine.t[axis][flat(v)]; };
+  for (int block = 0; block < fine_blocks.count(); ++block) {
+    for (int voxel = 0; voxel < kVoxels; ++voxel) {
+      const VoxelRef here{block, voxel};
+      const std::size_t k = flat(here);
+      const VoxelRef parent = map.of(here);
+      const std::size_t parent_index = flat(parent);
+      coarse.absorption[parent_index] += fine.absorption[k];
+      for (int axis = 0; axis < 3; ++axis) {
+        const bool upper_half = (voxel / kStep[axis]) % 2 == 1;
+        const VoxelRef below = neighbour_over(fine_blocks, block, voxel, 2 * axis);
+        const VoxelRef above = neighbour_over(fine_blocks, block, voxel, 2 * axis + 1);
+        for (int side = 0; side < 2; ++side) {
+          const float t_b = fine.boundary[2 * axis + side][k];
+          if (t_b <= 0.0f) continue;
+          const bool outer = (side == 1) == upper_half;
+          const float t_n = outer ? (side == 1 ? conductance(axis, below) : fine.t[axis][k]) : 0.0f;
+          coarse.boundary[2 * axis + side][parent_index] += t_n > 0.0f ? 1.0f / (1.0f / t_b + 0.5f / t_n) : t_b;
+        }
+        const float t = fine.t[axis][k];
+        if (!upper_half || t <= 0.0f || above.block < 0) continue;
+        const VoxelRef over = neighbour_over(coarse_blocks, parent.block, parent.voxel, 2 * axis + 1);
+        const VoxelRef target = map.of(above);
+        // A periodic seam may not line up on coarser levels; leaving it out there costs iterations, not correctness.
+        if (over.block != target.block || over.voxel != target.voxel) continue;
+        const float t_left = conductance(axis, below), t_right = conductance(axis, above);
+        const float resistance =
+            1.0f / t + (t_left > 0.0f ? 0.5f / t_left : 0.5f / t) + (t_right > 0.0f ? 0.5f / t_right : 0.5f / t);
+        coarse.t[axis][parent_index] += 1.0f / resistance;
+      }
+    }
+  }
+  return coarse;
+}
+
+MultigridLevel empty_level(const BlockGrid& blocks, int channels) {
+  MultigridLevel level{.blocks = blocks, .conductance = {}, .loss = {}, .neighbours = {}, .parent = {}, .octant = {}};
+  level.conductance.assign(level.stride() * 3 * channels, 0.0f);
+  level.loss.assign(level.stride() * channels, 0.0f);
+  for (const auto& around : blocks.neighbours()) level.neighbours.insert(level.neighbours.end(), around.begin(), around.end());
+  return level;
+}
+
+void store(MultigridLevel& level, const Operator& from, int channel) {
+  for (int axis = 0; axis < 3; ++axis) {
+    std::copy(from.t[axis].begin(), from.t[axis].end(), level.conductance.begin() + (3 * channel + axis) * level.stride());
+  }
+  float* loss = level.loss.data() + channel * level.stride();
+  for (std::size_t i = 0; i < from.absorption.size(); ++i) {
+    loss[i] = from.absorption[i];
+    for (const auto& face : from.boundary) loss[i] += face[i];
+  }
+}
+
+void link_to_parent(MultigridLevel& fine, const BlockGrid& coarse) {
+  for (int block = 0; block < fine.blocks.count(); ++block) {
+    const glm::ivec3 at = fine.blocks.coordinates(block);
+    fine.parent.push_back(coarse.find(at / 2));
+    fine.octant.push_back((at.x & 1) + 2 * (at.y & 1) + 4 * (at.z & 1));
+  }
+}
+
+}  // namespace
+
+std::vector<MultigridLevel> build_multigrid(const DiffusionMedium& medium) {
+  std::vector<MultigridLevel> levels;
+  levels.push_back(empty_level(medium.blocks, medium.channels));
+  glm::ivec3 extent = medium.frame.voxels;
+  while (std::max({extent.x, extent.y, extent.z}) > 1) {
+    const BlockGrid next = coarse_blocks(levels.back().blocks);
+    link_to_parent(levels.back(), next);
+    levels.push_back(empty_level(next, medium.channels));
+    extent = (extent + 1) / 2;
+  }
+  const std::vector<float> conductance = face_conductances(medium);
+  for (int channel = 0; channel < medium.channels; ++channel) {
+    Operator current = fine_operator(medium, conductance, channel);
+    store(levels[0], current, channel);
+    for (std::size_t level = 1; level < levels.size(); ++level) {
+      current = coarsen(current, levels[level - 1].blocks, levels[level].blocks);
+      store(levels[level], current, channel);
+    }
+  }
+  return levels;
+}
+
+}  // namespace turbid

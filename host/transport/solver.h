@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// The interface of every solver, split by what changes seldom (the medium) and often (the lights).
+#pragma once
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/base/progress.h"
+#include "host/cl/session.h"
+#include "host/scene/camera.h"
+#include "host/scene/features.h"
+#include "host/scene/light.h"
+#include "host/scene/settings.h"
+#include "volumes/fluence_volume.h"
+#include "volumes/medium_volume.h"
+
+namespace turbid {
+
+/// Where the light's power went, per colour [W]. emitted = missed + reflected + absorbed + escaped + in_flight + residual.
+struct EnergyBalance {
+  glm::dvec3 emitted{0};         ///< by the lights (what is aimed at the medium) and by emitting media
+  glm::dvec3 missed{0};          ///< never met a medium
+  glm::dvec3 reflected{0};       ///< by Fresnel where light enters
+  glm::dvec3 absorbed{0};        ///< by media, on first flight and diffusing
+  glm::dvec3 absorbed_opaque{0}; ///< by opaque surfaces
+  glm::dvec3 escaped{0};         ///< left the media or the domain for good, in total
+  std::array<glm::dvec3, 6> escaped_faces{};  ///< of it, towards -x, +x, -y, +y, -z, +z
+  glm::dvec3 in_flight{0};       ///< paths cut by max_steps, max_bounces or min_power; deposits without a voxel
+  double imbalance() const;      ///< largest |emitted - sum of the rest| / emitted over the colours
+};
+
+/// What the lights throw on the ground plane through and out of the media, for the view pass: power per texel.
+struct GroundLight {
+  glm::vec2 origin{0};           ///< lower corner (x, z) [scene units]
+  float texel = 1;               ///< edge of a texel [scene units]
+  int size = 0;                  ///< texels per side; 0: none
+  std::vector<glm::vec3> irradiance;  ///< [W/scene unit^2]
+};
+
+/// What one light sees: for shadows.
+struct ShadowMap {
+  glm::mat4 world_to_clip{1};    ///< OpenGL clip coordinates of a scene point
+  int size = 0;
+  std::vector<float> depth;      ///< distance from the light (point, spot) or along its direction from `origin` [scene units]
+  glm::vec3 origin{0};           ///< where depths are counted from
+};
+
+struct SolverReport {
+  std::string solver;
+  int channels = 3;
+  std::size_t rays = 0;
+  int march_batches = 0;
+  int iterations = 0;            ///< conjugate-gradient steps, or lattice sweeps
+  double error_estimate = 0;     ///< relative error of the fluence that the solver's own stopping test gives
+  std::size_t active_blocks = 0, active_voxels = 0;
+  EnergyBalance energy;
+};
+
+/// A solver's answer.
+struct LightSolution {
+  FluenceVolume volume;
+  GroundLight ground;
+  std::vector<ShadowMap> shadows;   ///< one per light; size 0: casts none
+  SolverReport report;
+};
+
+/// Turns the light that enters a medium into the fluence inside it.
+class TransportSolver {
+ public:
+  virtual ~TransportSolver() = default;
+  /// All work that does not depend on the lights.
+  virtual void prepare(const MediumVolume&) = 0;
+  /// May be called often after one prepare.
+  virtual LightSolution light(const LightList&) = 0;
+};
+
+/// Everything a solver is made from.
+struct SolverContext {
+  cl::Session& session;
+  Progress& progress;
+  SolverSettings settings;
+  SceneFeatures features;
+  const MediumDescription& description;   ///< the bodies' surfaces, for rasterising
+  Surroundings surroundings;
+};
+
+/// The one table of solvers: "steady", "lattice". Throws InputError for another name.
+std::unique_ptr<TransportSolver> make_solver(const SolverContext&);
+std::vector<std::string> solver_names();
+
+}  // namespace turbid

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The default solver: march, then the steady state by conjugate gradients.
+#pragma once
+#include "host/transport/marching_solver.h"
+#include "host/transport/steady.h"
+
+namespace turbid {
+
+class SteadySolver final : public MarchingSolver {
+ public:
+  using MarchingSolver::MarchingSolver;
+
+ protected:
+  const char* name() const override { return "steady"; }
+  void prepare_diffusion(const DiffusionMedium&) override;
+  DiffuseLight diffuse(const LightSource&) override;
+
+ private:
+  std::optional<SteadySolve> solve_;
+};
+
+}  // namespace turbid

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// Patches of voxels around each tile: known values inside, two rounds of extrapolation outside.
+#include "host/view/source_tiles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/base/parallel.h"
+
+namespace turbid {
+namespace {
+
+constexpr int kHalo = 3;                             // voxels known around a tile
+constexpr int kPatch = TURBID_TILE_EDGE + 2 * kHalo;  // edge of a patch
+constexpr int kPatchVoxels = kPatch * kPatch * kPatch;
+
+struct Patch {
+  std::vector<glm::vec3> value = std::vector<glm::vec3>(kPatchVoxels);
+  std::vector<char> known = std::vector<char>(kPatchVoxels);
+  static int index(int x, int y, int z) { return x + kPatch * (y + kPatch * z); }
+};
+
+/// Values of a region's own voxels around a tile.
+void load(Patch& patch, const SourceTile& tile, const FluenceVolume& volume, const MediumVolume& medium, float h) {
+  const glm::ivec3 lower = 8 * tile.block - kHalo, size(kPatch);
+  const Region& region = medium.region(tile.region);
+  std::vector<int> owner(kPatchVoxels);
+  medium.read_owner(lower, size, owner);
+  std::vector<Coefficients> varying;
+  if (region.heterogeneous) {
+    varying.resize(kPatchVoxels);
+    medium.read_coefficients(tile.region, lower, size, varying);
+  }
+  const std::size_t stride = volume.colour_stride();
+  for (int z = 0, i = 0; z < kPatch; ++z) {
+    for (int y = 0; y < kPatch; ++y) {
+      for (int x = 0; x < kPatch; ++x, ++i) {
+        patch.known[i] = 0;
+        if (owner[i] != tile.region) continue;
+        const glm::ivec3 voxel = lower + glm::ivec3(x, y, z);
+        const int block = volume.blocks.find(voxel / 8);
+        if (block < 0) continue;
+        const glm::ivec3 local = voxel % 8;
+        const std::size_t at = block * std::size_t{512} + local.x + 8 * (local.y + 8 * local.z);
+        Coefficients k{region.sigma_s, region.sigma_a, region.emission, region.g};
+        if (region.heterogeneous) k = varying[i];
+        const glm::vec3 sigma_s = delta_scaled(k.sigma_s, k.g);
+        for (int c = 0; c < 3; ++c) {
+          patch.value[i][c] =
+              h * (sigma_s[c] * volume.fluence[c * stride + at] + volume.deposit[c * stride + at] + k.emission[c]);
+        }
+        patch.known[i] = 1;
+      }
+    }
+  }
+}
+
+/// One round: every unknown voxel next to known ones continues their trend, a * (a / b) for values b, a on the way to it,
+/// held between a / 2 and 2 a; averaged over the directions that have it, nearer ones heavier.
+void extrapolate(Patch& patch) {
+  std::vector<std::pair<int, glm::vec3>> found;
+  for (int z = 0; z < kPatch; ++z) {
+    for (int y = 0; y < kPatch; ++y) {
+      for (int x = 0; x < kPatch; ++x) {
+        const int here = Patch::index(x, y, z);
+        if (patch.known[here]) continue;
+        glm::vec3 sum(0);
+        float weights = 0;
+        for (int dz = -1; dz <= 1; ++dz) {
+          for (int dy = -1; dy <= 1; ++dy) {
+            for (int dx = -1; dx <= 1; ++dx) {
+              const int x1 = x + dx, y1 = y + dy, z1 = z + dz;
+              if (std::min({x1, y1, z1}) < 0 || std::max({x1, y1, z1}) >= kPatch) continue;
+              const int first = Patch::index(x1, y1, z1);
+              if (!patch.known[first]) continue;
+              const glm::vec3 a = patch.value[first];
+              const int x2 = x1 + dx, y2 = y1 + dy, z2 = z1 + dz;
+              float weight = 1.0f / static_cast<float>(dx * dx + dy * dy + dz * dz);
+              glm::vec3 guess = a;
+              if (std::min({x2, y2, z2}) >= 0 && std::max({x2, y2, z2}) < kPatch && patch.known[Patch::index(x2, y2, z2)]) {
+                const glm::vec3 b = patch.value[Patch::index(x2, y2, z2)];
+                for (int c = 0; c < 3; ++c) {
+                  if (b[c] > 0) guess[c] = std::clamp(a[c] * (a[c] / b[c]), 0.5f * a[c], 2.0f * a[c]);
+                }
+              } else {
+                weight *= 0.1f;  // no trend known along this direction
+              }
+              sum += weight * guess;
+              weights += weight;
+            }
+          }
+        }
+        if (weights > 0) found.emplace_back(here, sum / weights);
+      }
+    }
+  }
+  for (const auto& [index, value] : found) {
+    patch.value[index] = value;
+    patch.known[index] = 1;
+  }
+}
+
+}  // namespace
+
+std::vector<float> make_source_tiles(const FluenceVolume& volume, const MediumVolume& medium, const DeviceMedium& device) {
+  const int channels = device.features.channels, width = channels == 3 ? 4 : 1;
+  const glm::vec3 tint = device.features.tint;
+  const int strongest = tint.r >= tint.g && tint.r >= tint.b ? 0 : tint.g >= tint.b ? 1 : 2;
+  std::vector<float> tiles(device.source_tiles.size() * TURBID_TILE_NODES * width, 0.0f);
+  parallel_ranges(static_cast<int>(device.source_tiles.size()), [&](int begin, int end) {
+    Patch patch;
+    for (int tile = begin; tile < end; ++tile) {
+      load(patch, device.source_tiles[tile], volume, medium, device.frame.voxel_size);
+      if (std::find(patch.known.begin(), patch.known.end(), 0) != patch.known.end()) {
+        extrapolate(patch);
+        extrapolate(patch);
+      }
+      float* out = tiles.data() + static_cast<std::size_t>(tile) * TURBID_TILE_NODES * width;
+      for (int z = 0; z < TURBID_TILE_EDGE; ++z) {
+        for (int y = 0; y < TURBID_TILE_EDGE; ++y) {
+          for (int x = 0; x < TURBID_TILE_EDGE; ++x, out += width) {
+            const int at = Patch::index(x + kHalo, y + kHalo, z + kHalo);
+            const glm::vec3 value = patch.known[at] ? patch.value[at] : glm::vec3(0);
+            if (channels == 3) {
+              for (int c = 0; c < 3; ++c) out[c] = value[c];
+            } else {
+              out[0] = value[strongest] / std::max(tint[strongest], 1e-30f);
+            }
+          }
+        }
+      }
+    }
+  });
+  return tiles;
+}
+
+}  // namespace turbid

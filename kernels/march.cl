@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// Marching pass (Bernabei et al. III-B): light rays bend, are attenuated, and leave what is scattered in the voxels.
+// In: rays. Out: rays still under way and branches split off at interfaces, deposits on the source tiles, tallies, light on
+// the ground. A launch does at most `batch_steps` steps per ray, and one split.
+//
+// Attenuation (Beer and Lambert), sigma constant over a step of length ds:
+//     P' = P exp(-sigma_t ds);   the loss P - P' is scattered by the share sigma_s / sigma_t and absorbed else.
+// (Bernabei's Fig. 4 adds exponentials where it must multiply, and deposits P' where it must deposit the scattered loss.)
+#include "lib/deposit.h"
+#include "lib/trace.h"
+#include "shared/march_params.h"
+
+typedef struct {
+  Colour absorbed, deposited, reflected, opaque_surface, in_flight;
+} Tally;
+
+static Ray ray_from(const global RayState* state) {
+  Ray ray;
+  ray.x = vload3(0, state->position);
+  ray.v = vload3(0, state->velocity);
+  ray.region = state->region;
+  ray.grace = state->grace;
+  return ray;
+}
+
+static void store_ray(global RayState* state, const Ray* ray, Colour power, const global RayState* parent, int bounces,
+                      int steps) {
+  vstore3(ray->x, 0, state->position);
+  vstore3(ray->v, 0, state->velocity);
+  state->region = ray->region;
+  state->grace = ray->grace;
+#if TURBID_CHANNELS == 3
+  vstore3(power.xyz, 0, state->power);
+#else
+  state->power[0] = power;
+#endif
+  state->floor_power = parent->floor_power;
+  state->entering = 0;
+  state->bounces = bounces;
+  state->steps = steps;
+}
+
+// Deposits the scattered part of a loss of power at a point and tallies the rest.
+static void lose(const Medium* medium, Tally* tally, global long* deposit, int region, float3 x, Colour loss,
+                 Extinction sigma, float fixed_per_watt) {
+#if TURBID_SCATTERING
+  const int set = medium->regions[region].source_set;
+  if (set >= 0) {
+    const Cell cell = locate(x);
+    const int tile = tile_of(medium, set, cell.block);
+    if (tile >= 0) {
+      const Colour sigma_t = sigma.sigma_s + sigma.sigma_a;
+      const Colour scattered = loss * (sigma.sigma_s / fmax(sigma_t, 1e-30f));
+      splat(deposit, tile, cell, scattered, fixed_per_watt);
+      tally->deposited += scattered;
+      loss -= scattered;
+    }
+  }
+#endif
+  tally->absorbed += loss;
+}
+
+// Bilinear splat of the light that leaves the domain downwards onto the ground's map.
+static void light_ground(global long* ground, const MarchParams* p, float3 x, float3 direction, Colour power) {
+  if (p->ground == 0 || direction.y > -1e-4f || x.y < p->ground_height) return;
+  const float t = (p->ground_height - x.y) / direction.y;
+  const float u = (x.x + t * direction.x - p->ground_origin[0]) / p->ground_texel - 0.5f;
+  const float v = (x.z + t * direction.z - p->ground_origin[1]) / p->ground_texel - 0.5f;
+  if (!(u >= 0.0f && v >= 0.0f && u < p->ground_size - 1 && v < p->ground_size - 1)) return;
+  const int iu = (int)u, iv = (int)v;
+  const float fu = u - iu, fv = v - iv;
+  for (int corner = 0; corner < 4; ++corner) {
+    const int du = corner & 1, dv = corner >> 1;
+    const float weight = (du ? fu : 1.0f - fu) * (dv ? fv : 1.0f - fv);
+    const size_t texel = (size_t)(iv + dv) * p->ground_size + iu + du;
+    add_power(ground + TURBID_CHANNELS * texel, weight * power, p->fixed_per_watt);
+  }
+}
+
+kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, global RayState* next,
+                  global int* next_count, global long* deposit, global long* tallies, global long* ground) {
+  const int index = get_global_id(0);
+  if (index >= p.ray_count) return;
+  const Medium medium = MEDIUM_FROM_ARGUMENTS;
+  const global RayState* state = rays + index;
+  Ray ray = ray_from(state);
+  Colour power = colour_load(state->power);
+  const float floor_power = state->floor_power;
+  int bounces = state->bounces, steps = state->steps;
+  const Colour none = colour_of(0.0f, 0.0f, 0.0f);
+  Tally tally = {none, none, none, none, none};
+  bool alive = true;
+
+  if (state->entering) {
+    const float eta_from = fast_length(ray.v);
+    const Cell cell = locate(ray.x);
+    const float eta_to = eta_at(&medium, ray.region, cell);
+    const float3 direction = ray.v / eta_from;
+    if (medium.regions[ray.region].smooth_group == 0 && fabs(eta_from - eta_to) > 1e-6f) {
+      const Interface surface = meet_interface(direction, vload3(0, state->normal), eta_from, eta_to);
+      tally.reflected = surface.reflectance * power;
+      power -= tally.reflected;
+      ray.v = eta_to * surface.refracted;
+      alive = surface.reflectance < 1.0f;
+    } else {
+      ray.v = eta_to * direction;
+    }
+  }
+
+  bool split = false;
+  for (int i = 0; alive && !split && i < p.batch_steps; ++i) {
+    if (steps >= p.max_steps) {
+      tally.in_flight += power;
+      alive = false;
+      break;
+    }
+    ++steps;
+    const int region = ray.region;
+    const Step step = advance(&medium, &ray, p.step);
+    if (medium.regions[region].attenuates) {
+      const Extinction sigma = extinction_at(&medium, region, locate(step.middle));
+      const Colour loss = power * -expm1(-(sigma.sigma_s + sigma.sigma_a) * step.length);
+      power -= loss;
+      lose(&medium, &tally, deposit, region, step.middle, loss, sigma, p.fixed_per_watt);
+      if (colour_max(power) < floor_power) {
+        // Too weak to follow: what is left ends here as if the medium went on.
+        const Colour sigma_t = sigma.sigma_s + sigma.sigma_a;
+        const Colour ended = sigma_t > 0.0f ? power : none;
+        tally.in_flight += power - ended;
+        lose(&medium, &tally, deposit, region, step.middle, ended, sigma, p.fixed_per_watt);
+        alive = false;
+        break;
+      }
+    }
+    if (step.event == EVENT_FACE) {
+      const int axis = step.face >> 1;
+      const int kind = p.faces[step.face];
+      if (kind == TURBID_FACE_MIRROR) {
+        if (axis == 0) ray.v.x = -ray.v.x;
+        if (axis == 1) ray.v.y = -ray.v.y;
+        if (axis == 2) ray.v.z = -ray.v.z;
+      } else if (kind == TURBID_FACE_PERIODIC) {
+        const float other = (step.face & 1) ? 0.0f : 1.0f;
+        if (axis == 0) ray.x.x = other * TURBID_VOXELS_X;
+        if (axis == 1) ray.x.y = other * TURBID_VOXELS_Y;
+        if (axis == 2) ray.x.z = other * TURBID_VOXELS_Z;
+        ray.region = region_at(&medium, locate(ray.x));
+      } else {
+        add_power(tallies + 3 * (TURBID_TALLY_ESCAPED + step.face), power, p.fixed_per_watt);
+        light_ground(ground, &p, ray.x, normalize(ray.v), power);
+        alive = false;
+      }
+    } else if (step.event == EVENT_SURFACE) {
+      const int next_region = step.next_region;
+      if (medium.regions[next_region].opaque) {
+        tally.opaque_surface += power;
+        alive = false;
+        break;
+      }
+      const float eta_from = fast_length(ray.v);
+      const float eta_to = eta_at(&medium, next_region, locate(step.beyond));
+      const bool no_interface =
+          (medium.regions[region].smooth_group && medium.regions[next_region].smooth_group) || fabs(eta_from - eta_to) < 1e-6f;
+      if (no_interface) {
+        ray.x = step.beyond;
+        ray.region = next_region;
+        continue;
+      }
+      if (++bounces > p.max_bounces) {
+        tally.in_flight += power;
+        alive = false;
+        break;
+      }
+      const float3 normal = surface_normal(&medium, step.surface, step.beyond);
+      const Interface surface = meet_interface(ray.v / eta_from, normal, eta_from, eta_to);
+      Ray reflected = ray, refracted = ray;
+      reflected.v = eta_from * surface.reflected;
+      refracted.v = eta_to * surface.refracted;
+      refracted.x = step.beyond;
+      refracted.region = next_region;
+      reflected.grace = refracted.grace = 0.0f;
+      // The stronger branch goes on here, the weaker one is stored as a ray of its own.
+      const bool keep_reflected = surface.reflectance > 0.5f;
+      const Colour reflected_power = surface.reflectance * power;
+      const Colour refracted_power = power - reflected_power;
+      const Colour side_power = keep_reflected ? refracted_power : reflected_power;
+      const Ray side = keep_reflected ? refracted : reflected;
+      ray = keep_reflected ? reflected : refracted;
+      power = keep_reflected ? reflected_power : refracted_power;
+      if (colour_max(side_power) >= floor_power) {
+        store_ray(next + atomic_inc(next_count), &side, side_power, state, bounces, steps);
+        split = true;
+      } else {
+        tally.in_flight += side_power;
+      }
+    }
+  }
+  if (alive) store_ray(next + atomic_inc(next_count), &ray, power, state, bounces, steps);
+  add_power(tallies + 3 * TURBID_TALLY_ABSORBED, tally.absorbed, p.fixed_per_watt);
+  add_power(tallies + 3 * TURBID_TALLY_DEPOSITED, tally.deposited, p.fixed_per_watt);
+  add_power(tallies + 3 * TURBID_TALLY_REFLECTED, tally.reflected, p.fixed_per_watt);
+  add_power(tallies + 3 * TURBID_TALLY_OPAQUE, tally.opaque_surface, p.fixed_per_watt);
+  add_power(tallies + 3 * TURBID_TALLY_IN_FLIGHT, tally.in_flight, p.fixed_per_watt);
+}

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies and materials become voxels: distances, then who owns each voxel, then coefficients, then the blurred index.
+#include <cmath>
+#include <stdexcept>
+
+#include "host/base/errors.h"
+#include "volumes/medium_grids.h"
+#include "volumes/vdb_file.h"
+
+namespace turbid {
+namespace {
+
+/// Turns steps of equal weight into one fraction for the caller, who may throw to stop.
+class Steps {
+ public:
+  Steps(const std::function<void(double)>& progress, int count) : progress_(progress), count_(count) {}
+  void within(double fraction) const {
+    if (progress_) progress_(std::min(1.0, (done_ + fraction) / count_));
+  }
+  void next() {
+    ++done_;
+    within(0);
+  }
+
+ private:
+  const std::function<void(double)>& progress_;
+  int count_, done_ = 0;
+};
+
+void require_consistent(const MediumDescription& scene) {
+  const GridFrame& frame = scene.frame;
+  for (int axis = 0; axis < 3; ++axis)
+    if (frame.voxels[axis] <= 0 || frame.voxels[axis] % kBlockEdge != 0)
+      throw std::invalid_argument("voxelise: the domain is no whole number of blocks");
+  if (!(frame.voxel_size > 0) || !std::isfinite(frame.voxel_size)) throw std::invalid_argument("voxelise: voxel size");
+  if (!(scene.smoothing_voxels >= 0) || scene.smoothing_voxels > 64)
+    throw std::invalid_argument("voxelise: smoothing_voxels");
+  const int materials = static_cast<int>(scene.materials.size());
+  if (scene.ambient_material < -1 || scene.ambient_material >= materials)
+    throw std::invalid_argument("voxelise: ambient");
+  for (const Body& body : scene.bodies)
+    if (body.material < 0 || body.material >= materials)
+      throw std::invalid_argument("voxelise: material of " + body.name);
+  if (scene.ambient_material >= 0 && scene.materials[scene.ambient_material].opaque)
+    throw InputError("material \"" + scene.materials[scene.ambient_material].name +
+                     "\": is opaque and fills the domain: give the domain a medium, or none for vacuum");
+}
+
+}  // namespace
+
+openvdb::Int32Grid::Ptr owner_of_voxels(const MediumVolume::Grids& medium) {
+  return grid_from_blocks<openvdb::Int32Grid>(medium.frame, 0, [&](glm::ivec3 block) {
+    BlockContent<openvdb::Int32Grid> content;
+    const auto at = first_voxel(block);
+    int everywhere = 0;
+    for (int r = 1; r < static_cast<int>(medium.regions.size()); ++r) {
+      const auto& tree = medium.fields[r].signed_distance->tree();
+      const auto* leaf = tree.probeConstLeaf(at);
+      if (!leaf) {
+        if (tree.getValue(at) < 0) {
+          everywhere = r;
+          content.leaf.reset();
+        }
+        continue;
+      }
+      const float* d = leaf->buffer().data();
+      if (std::none_of(d, d + kBlockVoxels, [](float v) { return v < 0; })) continue;
+      if (!content.leaf) content.leaf = make_leaf<openvdb::Int32Grid>(block, everywhere, everywhere > 0);
+      for (int offset = 0; offset < kBlockVoxels; ++offset)
+        if (d[offset] < 0) content.leaf->setValueOn(offset, r);
+    }
+    if (!content.leaf && everywhere > 0) {
+      content.tile = everywhere;
+      content.tile_active = true;
+    }
+    return content;
+  });
+}
+
+MediumVolume voxelise(const MediumDescription& scene, const std::function<void(double)>& progress) {
+  require_consistent(scene);
+  initialise_vdb();
+  auto medium = std::make_unique<MediumVolume::Grids>();
+  medium->frame = scene.frame;
+  medium->faces = scene.faces;
+  medium->smoothing_voxels = scene.smoothing_voxels;
+  medium->regions.resize(1 + scene.bodies.size());
+  medium->fields.resize(1 + scene.bodies.size());
+
+  const auto material_of = [&](int r) -> const Material* {
+    const int material = r > 0 ? scene.bodies[r - 1].material : scene.ambient_material;
+    return material >= 0 ? &scene.materials[material] : nullptr;
+  };
+  const int regions = static_cast<int>(medium->regions.size());
+  int step_count = regions + 1;  // a distance per body, the owners, the blur
+  for (int r = 0; r < regions; ++r)
+    if (const Material* material = material_of(r)) step_count += varying_fields(*material);
+  Steps steps(progress, step_count);
+  steps.within(0);
+
+  for (int r = 1; r < regions; ++r) {
+    medium->fields[r].signed_distance = body_distance(scene.bodies[r - 1].solid, scene.frame);
+    steps.next();
+  }
+  medium->owner = owner_of_voxels(*medium);
+  steps.next();
+
+  bool any_smooth = false;
+  for (int r = 0; r < regions; ++r) {
+    Region& region = medium->regions[r];
+    region.name = r > 0 ? scene.bodies[r - 1].name : "ambient";
+    if (const Material* material = material_of(r))
+      fill_coefficients(
+          *medium, r, *material, [&](double fraction) { steps.within(fraction); }, [&] { steps.next(); });
+    region.smooth_surface = r > 0 && !region.opaque && scene.bodies[r - 1].surface == SurfaceKind::smooth;
+    any_smooth = any_smooth || region.smooth_surface;
+  }
+  if (any_smooth) {
+    medium->regions[0].smooth_surface = true;
+    medium->blurred_eta = blurred_index(*medium);
+    for (Region& region : medium->regions) region.graded_index = region.graded_index || region.smooth_surface;
+  }
+  steps.next();
+  return MediumVolume(std::move(medium));
+}
+
+}  // namespace turbid

@@ -61,7 +61,7 @@ static void split(Branch* branch, Branch* stack, int* stacked, float3 normal, fl
   Branch reflected = *branch, refracted = *branch;
   reflected.weight *= surface.reflectance;
   reflected.ray.v = eta_from * surface.reflected;
-  reflected.ray.grace = 0.0f;
+  reflected.ray.grace = grace;
   refracted.weight *= 1.0f - surface.reflectance;
   refracted.ray.v = eta_to * surface.refracted;
   refracted.ray.x = beyond;
@@ -113,7 +113,6 @@ kernel void view(MEDIUM_ARGUMENTS, ViewParams p, const global ViewSample* sample
   int steps = 0;
   while (stacked > 0) {
     Branch branch = stack[--stacked];
-    // A reflection off the outside starts on the rasterised surface, perhaps a little inside the sampled one.
     while (steps < p.max_steps) {
       ++steps;
       const int region = branch.ray.region;

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fields read from OpenVDB files: a float or Vec3f grid, interpolated trilinearly in its own transform. See procedural.h.
+#include <openvdb/io/GridDescriptor.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <utility>
+#include <vector>
 
 #include "host/base/errors.h"
 #include "volumes/procedural.h"
@@ -73,6 +77,34 @@ std::string list_of(const Directory& directory) {
   return text;
 }
 
+/// OpenVDB reads a file that is cut short without a word, so the ends that its grids announce are compared with its size.
+class FileEnd : private openvdb::io::Archive {
+ public:
+  static std::uintmax_t announced(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    FileEnd archive;
+    archive.readHeader(in);
+    archive.setFormatVersion(in);
+    archive.setLibraryVersion(in);
+    if (!archive.inputHasGridOffsets()) return 0;
+    openvdb::MetaMap().readMeta(in);
+    std::uintmax_t end = 0;
+    for (int grids = readGridCount(in); grids > 0 && in; --grids) {
+      openvdb::io::GridDescriptor descriptor;
+      descriptor.read(in);
+      end = std::max(end, static_cast<std::uintmax_t>(descriptor.getEndPos()));
+      descriptor.seekToEnd(in);
+    }
+    return end;
+  }
+};
+
+void refuse_cut_short(const std::string& path) {
+  const std::uintmax_t size = std::filesystem::file_size(path), announced = FileEnd::announced(path);
+  if (size < announced)
+    throw InputError(path + ": is cut short: holds " + std::to_string(size) + " of " + std::to_string(announced) + " bytes");
+}
+
 /// The grid that is meant: `wanted`, or the only suitable one.
 std::string choose(const std::string& path, const std::string& wanted, const Directory& directory) {
   if (directory.empty()) throw InputError(path + ": holds no grids");
@@ -112,6 +144,7 @@ FieldPtr vdb_field(const std::string& path, const std::string& grid, glm::vec3 s
   std::string name;
   try {
     file.open(/*delayLoad=*/false);
+    refuse_cut_short(path);
     name = choose(path, grid, directory_of(file));
     read = file.readGrid(name);
   } catch (const openvdb::Exception& error) {

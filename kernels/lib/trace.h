@@ -134,9 +134,10 @@ static Step advance(const Medium* medium, Ray* ray, float step_size) {
 #if TURBID_BODIES > 0
   const int there = region_at(medium, locate(to));
   if (there != ray->region) {
-    // A ray that starts on the rasterised surface may find itself a little outside the sampled one: let it come in first.
-    const bool coming_in = ray->grace > 0.0f && step.event == EVENT_NONE && there < ray->region;
-    if (!coming_in) {
+    // A ray that starts on the rasterised surface may find itself a little on the wrong side of the sampled one, which is
+    // coarser: it keeps its region while it gets clear.
+    const bool getting_clear = ray->grace > 0.0f && step.event == EVENT_NONE;
+    if (!getting_clear) {
       step.event = EVENT_SURFACE;
       step.next_region = there;
       const float3 end = to;

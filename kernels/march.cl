@@ -60,8 +60,9 @@ static void lose(const Medium* medium, Tally* tally, global long* deposit, int r
   tally->absorbed += loss;
 }
 
-// Bilinear splat of the light that leaves the domain downwards onto the ground's map.
-static void light_ground(global long* ground, const MarchParams* p, float3 x, float3 direction, Colour power) {
+// Bilinear splat of light that goes down from x onto the ground's map; `ground_rays` counts the rays per texel.
+static void light_ground(global long* ground, global int* ground_rays, const MarchParams* p, float3 x, float3 direction,
+                         Colour power) {
   if (p->ground == 0 || direction.y > -1e-4f || x.y < p->ground_height) return;
   const float t = (p->ground_height - x.y) / direction.y;
   const float u = (x.x + t * direction.x - p->ground_origin[0]) / p->ground_texel - 0.5f;
@@ -69,6 +70,7 @@ static void light_ground(global long* ground, const MarchParams* p, float3 x, fl
   if (!(u >= 0.0f && v >= 0.0f && u < p->ground_size - 1 && v < p->ground_size - 1)) return;
   const int iu = (int)u, iv = (int)v;
   const float fu = u - iu, fv = v - iv;
+  atomic_inc(ground_rays + (int)(v + 0.5f) * p->ground_size + (int)(u + 0.5f));
   for (int corner = 0; corner < 4; ++corner) {
     const int du = corner & 1, dv = corner >> 1;
     const float weight = (du ? fu : 1.0f - fu) * (dv ? fv : 1.0f - fv);
@@ -78,7 +80,8 @@ static void light_ground(global long* ground, const MarchParams* p, float3 x, fl
 }
 
 kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, global RayState* next,
-                  global int* next_count, global long* deposit, global long* tallies, global long* ground) {
+                  global int* next_count, global long* deposit, global long* tallies, global long* ground,
+                  global int* ground_rays) {
   const int index = get_global_id(0);
   if (index >= p.ray_count) return;
   const Medium medium = MEDIUM_FROM_ARGUMENTS;
@@ -96,7 +99,7 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
     const Cell cell = locate(ray.x);
     const float eta_to = eta_at(&medium, ray.region, cell);
     const float3 direction = ray.v / eta_from;
-    if (medium.regions[ray.region].smooth_group == 0 && fabs(eta_from - eta_to) > 1e-6f) {
+    if (!index_matched(&medium, 0, ray.region, eta_from, eta_to)) {
       const Interface surface = meet_interface(direction, vload3(0, state->normal), eta_from, eta_to);
       tally.reflected = surface.reflectance * power;
       power -= tally.reflected;
@@ -116,7 +119,15 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
     }
     ++steps;
     const int region = ray.region;
+    const float3 from = ray.x;
     const Step step = advance(&medium, &ray, p.step);
+    if (p.ground && region == 0 && from.y > p.ground_height && ray.x.y <= p.ground_height) {
+      // The ground cuts through the domain: what reaches it counts as escaped downwards.
+      add_power(tallies + 3 * (TURBID_TALLY_ESCAPED + 2), power, p.fixed_per_watt);
+      light_ground(ground, ground_rays, &p, from, normalize(ray.x - from), power);
+      alive = false;
+      break;
+    }
     if (medium.regions[region].attenuates) {
       const Extinction sigma = extinction_at(&medium, region, locate(step.middle));
       const Colour loss = power * -expm1(-(sigma.sigma_s + sigma.sigma_a) * step.length);
@@ -147,7 +158,7 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
         ray.region = region_at(&medium, locate(ray.x));
       } else {
         add_power(tallies + 3 * (TURBID_TALLY_ESCAPED + step.face), power, p.fixed_per_watt);
-        light_ground(ground, &p, ray.x, normalize(ray.v), power);
+        light_ground(ground, ground_rays, &p, ray.x, normalize(ray.v), power);
         alive = false;
       }
     } else if (step.event == EVENT_SURFACE) {
@@ -160,7 +171,7 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
       const float eta_from = fast_length(ray.v);
       const float eta_to = eta_at(&medium, next_region, locate(step.beyond));
       const bool no_interface =
-          (medium.regions[region].smooth_group && medium.regions[next_region].smooth_group) || fabs(eta_from - eta_to) < 1e-6f;
+          index_matched(&medium, region, next_region, eta_from, eta_to);
       if (no_interface) {
         ray.x = step.beyond;
         ray.region = next_region;

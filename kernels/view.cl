@@ -101,7 +101,7 @@ kernel void view(MEDIUM_ARGUMENTS, ViewParams p, const global ViewSample* sample
     first.weight = colour_of(1.0f, 1.0f, 1.0f) * (eta_observer * eta_observer);
     const float eta = eta_at(&medium, sample->region, locate(start));
     first.ray.v = direction * eta;
-    if (sample->entering && medium.regions[sample->region].smooth_group == 0 && fabs(eta - eta_observer) > 1e-6f) {
+    if (sample->entering && !index_matched(&medium, 0, sample->region, eta_observer, eta)) {
       first.ray.region = 0;
       first.ray.v = direction * eta_observer;
       split(&first, stack, &stacked, vload3(0, sample->normal), eta_observer, eta, sample->region, start, 1.5f,
@@ -155,8 +155,7 @@ kernel void view(MEDIUM_ARGUMENTS, ViewParams p, const global ViewSample* sample
         }
         const float eta_from = fast_length(branch.ray.v);
         const float eta_to = eta_at(&medium, next_region, locate(step.beyond));
-        if ((medium.regions[region].smooth_group && medium.regions[next_region].smooth_group) ||
-            fabs(eta_from - eta_to) < 1e-6f) {
+        if (index_matched(&medium, region, next_region, eta_from, eta_to)) {
           branch.ray.x = step.beyond;
           branch.ray.region = next_region;
           continue;

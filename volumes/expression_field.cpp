@@ -16,9 +16,15 @@ namespace {
 double fbm(double x, double y, double z, double octaves) {
   return fractal_noise(x, y, z, octaves >= 1.0 ? static_cast<int>(std::min(octaves, 16.0)) : 1);
 }
-double clamp(double v, double lo, double hi) { return std::min(std::max(v, lo), hi); }
-double mix(double a, double b, double t) { return a + t * (b - a); }
-double step(double edge, double v) { return v < edge ? 0.0 : 1.0; }
+double clamp(double v, double lo, double hi) {
+  return std::min(std::max(v, lo), hi);
+}
+double mix(double a, double b, double t) {
+  return a + t * (b - a);
+}
+double step(double edge, double v) {
+  return v < edge ? 0.0 : 1.0;
+}
 double smoothstep(double lo, double hi, double v) {
   if (!(lo < hi)) return step(lo, v);
   const double t = clamp((v - lo) / (hi - lo), 0.0, 1.0);
@@ -30,7 +36,8 @@ double smoothstep(double lo, double hi, double v) {
                    (character > 0 ? ", character " + std::to_string(character) : std::string()) + ": " + message);
 }
 
-/// One text and the variables that it reads. muParser writes to itself while evaluating, so every evaluate() makes its own.
+/// One text and the variables that it reads. muParser writes to itself while evaluating, so every evaluate() makes its
+/// own.
 class Program {
  public:
   explicit Program(const std::string& text) : text_(text) {
@@ -48,7 +55,8 @@ class Program {
       parser_.SetExpr(text);
       parser_.Eval();
       constant_ = parser_.GetUsedVar().empty();
-      if (parser_.GetNumResults() != 1) fail(text, 0, "gives " + std::to_string(parser_.GetNumResults()) + " values: expected one");
+      if (parser_.GetNumResults() != 1)
+        fail(text, 0, "gives " + std::to_string(parser_.GetNumResults()) + " values: expected one");
     } catch (const mu::Parser::exception_type& error) {
       refuse(error);
     }
@@ -76,7 +84,8 @@ class Program {
       if (text_[i] != '=') continue;
       const bool comparison = (i > 0 && std::string("<>!=").find(text_[i - 1]) != std::string::npos) ||
                               (i + 1 < text_.size() && text_[i + 1] == '=');
-      if (!comparison) fail(text_, static_cast<int>(i) + 1, "\"=\" would assign a value: expected a comparison, \"==\"");
+      if (!comparison)
+        fail(text_, static_cast<int>(i) + 1, "\"=\" would assign a value: expected a comparison, \"==\"");
     }
   }
   [[noreturn]] void refuse(const mu::Parser::exception_type& error) const {
@@ -85,8 +94,9 @@ class Program {
     const int position = error.GetPos();
     const bool inside = position >= 0 && position <= static_cast<int>(text_.size());
     fail(text_, inside ? position + 1 : 0,
-         message + "; it may use x, y, z, r, pi, noise(x,y,z), fbm(x,y,z,octaves), clamp, mix, step, smoothstep and sin, "
-                   "sqrt, exp, min, max, ...");
+         message +
+             "; it may use x, y, z, r, pi, noise(x,y,z), fbm(x,y,z,octaves), clamp, mix, step, smoothstep and sin, "
+             "sqrt, exp, min, max, ...");
   }
 
   std::string text_;
@@ -134,7 +144,9 @@ class ExpressionField final : public Field {
 
 }  // namespace
 
-FieldPtr expression_field(const std::array<std::string, 3>& texts) { return std::make_shared<ExpressionField>(texts); }
+FieldPtr expression_field(const std::array<std::string, 3>& texts) {
+  return std::make_shared<ExpressionField>(texts);
+}
 
 FieldPtr expression_field(const std::string& text) {
   return expression_field(std::array<std::string, 3>{text, text, text});

@@ -30,8 +30,12 @@ double gradient_dot(std::int64_t i, std::int64_t j, std::int64_t k, double x, do
   return ((edge & 1) ? -u : u) + ((edge & 2) ? -v : v);
 }
 
-double fade(double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); }
-double lerp(double t, double a, double b) { return a + t * (b - a); }
+double fade(double t) {
+  return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+}
+double lerp(double t, double a, double b) {
+  return a + t * (b - a);
+}
 
 }  // namespace
 

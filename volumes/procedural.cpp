@@ -16,7 +16,9 @@ std::string number(float value) {
   return text;
 }
 
-std::string numbers(glm::vec3 v) { return std::string("[") + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + "]"; }
+std::string numbers(glm::vec3 v) {
+  return std::string("[") + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + "]";
+}
 
 class ConstantField final : public Field {
  public:
@@ -55,30 +57,32 @@ FieldPtr index_field(std::string text, Index index) {
 
 }  // namespace
 
-FieldPtr constant_field(glm::vec3 value) { return std::make_shared<ConstantField>(value); }
+FieldPtr constant_field(glm::vec3 value) {
+  return std::make_shared<ConstantField>(value);
+}
 
 FieldPtr luneburg_index(glm::vec3 centre, float radius, float eta_surface) {
   return index_field(std::string("luneburg about ") + numbers(centre) + ", radius " + number(radius) + ", index " +
                          number(eta_surface) + " at its surface",
                      [=](glm::vec3 x) {
                        const float q = glm::distance(x, centre) / radius;
-                       return eta_surface * std::sqrt(2.0f - std::min(q * q, 1.0f));
+                       return eta_surface * std::sqrt(std::max(2.0f - q * q, 0.1f));
                      });
 }
 
 FieldPtr fisheye_index(glm::vec3 centre, float radius, float eta_centre) {
-  return index_field(
-      std::string("fisheye about ") + numbers(centre) + ", radius " + number(radius) + ", index " + number(eta_centre) + " at its centre",
-      [=](glm::vec3 x) {
-        const float q = glm::distance(x, centre) / radius;
-        return std::max(eta_centre / (1.0f + std::min(q * q, 1.0f)), 1.0f);
-      });
+  return index_field(std::string("fisheye about ") + numbers(centre) + ", radius " + number(radius) + ", index " +
+                         number(eta_centre) + " at its centre",
+                     [=](glm::vec3 x) {
+                       const float q = glm::distance(x, centre) / radius;
+                       return eta_centre / (1.0f + q * q);
+                     });
 }
 
 FieldPtr rod_index(glm::vec3 centre, glm::vec3 axis, float eta_axis, float alpha) {
   const glm::vec3 along = glm::normalize(axis);
-  return index_field(std::string("rod through ") + numbers(centre) + " along " + numbers(along) + ", index " + number(eta_axis) +
-                         " on its axis, alpha " + number(alpha),
+  return index_field(std::string("rod through ") + numbers(centre) + " along " + numbers(along) + ", index " +
+                         number(eta_axis) + " on its axis, alpha " + number(alpha),
                      [=](glm::vec3 x) {
                        const glm::vec3 d = x - centre;
                        const glm::vec3 across = d - glm::dot(d, along) * along;
@@ -88,7 +92,8 @@ FieldPtr rod_index(glm::vec3 centre, glm::vec3 axis, float eta_axis, float alpha
 }
 
 FieldPtr linear_index(glm::vec3 centre, float eta_centre, glm::vec3 gradient) {
-  return index_field(std::string("linear about ") + numbers(centre) + ", index " + number(eta_centre) + ", gradient " + numbers(gradient),
+  return index_field(std::string("linear about ") + numbers(centre) + ", index " + number(eta_centre) + ", gradient " +
+                         numbers(gradient),
                      [=](glm::vec3 x) { return std::max(eta_centre + glm::dot(gradient, x - centre), 1.0f); });
 }
 

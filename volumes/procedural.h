@@ -22,9 +22,10 @@ FieldPtr expression_field(const std::string& text);
 FieldPtr vdb_field(const std::string& path, const std::string& grid, glm::vec3 scale, glm::vec3 offset);
 
 /// Named index fields about `centre` [scene units]:
-/// Luneburg (1944): eta = eta_surface * sqrt(2 - (r/R)^2);  Maxwell (1854) fish-eye: eta = eta_0 / (1 + (r/R)^2), held at its
-/// r = R value 1 at least outside;  gradient rod: eta = eta_0 * sqrt(1 - (a rho)^2), rho the distance from the axis, eta >= 1;
-/// linear: eta = eta_0 + gradient . (x - centre), eta >= 1.
+/// Luneburg (1944): eta = eta_surface * sqrt(2 - (r/R)^2);  Maxwell (1854) fish-eye: eta = eta_0 / (1 + (r/R)^2);
+/// gradient rod: eta = eta_0 * sqrt(1 - (a rho)^2), rho the distance from the axis, held at 1 where it would fall below;
+/// linear: eta = eta_0 + gradient . (x - centre), held at 1 likewise.
+/// The first two go on smoothly beyond r = R, also below 1: interpolation up to the surface of a body of radius R needs that.
 FieldPtr luneburg_index(glm::vec3 centre, float radius, float eta_surface);
 FieldPtr fisheye_index(glm::vec3 centre, float radius, float eta_centre);
 FieldPtr rod_index(glm::vec3 centre, glm::vec3 axis, float eta_axis, float alpha);

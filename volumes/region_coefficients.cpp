@@ -18,6 +18,7 @@ namespace {
 struct Rule {
   const char* name;
   float lowest;      ///< smallest allowed value, or the open end of the range of g
+  float lowest_elsewhere;  ///< at voxels that the region does not own, where values serve interpolation only
   bool mean_cosine;  ///< in (-1, 1)
   const char* expected;
 
@@ -27,14 +28,14 @@ struct Rule {
   }
   float made_valid(float v) const {
     if (mean_cosine) return std::isnan(v) ? 0.0f : std::clamp(v, -0.999f, 0.999f);
-    return std::isfinite(v) ? std::max(v, lowest) : lowest;
+    return std::isfinite(v) ? std::max(v, lowest_elsewhere) : lowest;
   }
 };
-constexpr Rule kEta{"eta", 1.0f, false, "a finite number >= 1"};
-constexpr Rule kSigmaS{"sigma_s", 0.0f, false, "a finite number >= 0 [1/scene unit]"};
-constexpr Rule kSigmaA{"sigma_a", 0.0f, false, "a finite number >= 0 [1/scene unit]"};
-constexpr Rule kEmission{"emission", 0.0f, false, "a finite number >= 0 [W/scene unit^3]"};
-constexpr Rule kMeanCosine{"g", -1.0f, true, "a number in (-1, 1)"};
+constexpr Rule kEta{"eta", 1.0f, 0.3f, false, "a finite number >= 1"};
+constexpr Rule kSigmaS{"sigma_s", 0.0f, 0.0f, false, "a finite number >= 0 [1/scene unit]"};
+constexpr Rule kSigmaA{"sigma_a", 0.0f, 0.0f, false, "a finite number >= 0 [1/scene unit]"};
+constexpr Rule kEmission{"emission", 0.0f, 0.0f, false, "a finite number >= 0 [W/scene unit^3]"};
+constexpr Rule kMeanCosine{"g", -1.0f, -1.0f, true, "a number in (-1, 1)"};
 
 std::string format(const char* pattern, double a, double b = 0, double c = 0) {
   char text[128];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fields read from OpenVDB files: a float or Vec3f grid, interpolated trilinearly in its own transform. See procedural.h.
+// Fields read from OpenVDB files: a float or Vec3f grid, interpolated trilinearly in its own transform. See
+// procedural.h.
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
@@ -57,7 +58,9 @@ std::string class_name(const openvdb::GridBase& grid) {
   return "a density";
 }
 
-bool suits(const openvdb::GridBase& grid) { return class_name(grid) == "a density"; }
+bool suits(const openvdb::GridBase& grid) {
+  return class_name(grid) == "a density";
+}
 
 /// A file's grids without their voxels, by names that tell them apart: of two grids "a" the second is "a[1]".
 using Directory = std::vector<std::pair<std::string, openvdb::GridBase::ConstPtr>>;
@@ -77,7 +80,8 @@ std::string list_of(const Directory& directory) {
   return text;
 }
 
-/// OpenVDB reads a file that is cut short without a word, so the ends that its grids announce are compared with its size.
+/// OpenVDB reads a file that is cut short without a word, so the ends that its grids announce are compared with its
+/// size.
 class FileEnd : private openvdb::io::Archive {
  public:
   static std::uintmax_t announced(const std::string& path) {
@@ -87,9 +91,10 @@ class FileEnd : private openvdb::io::Archive {
     archive.setFormatVersion(in);
     archive.setLibraryVersion(in);
     if (!archive.inputHasGridOffsets()) return 0;
+    in.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
     openvdb::MetaMap().readMeta(in);
     std::uintmax_t end = 0;
-    for (int grids = readGridCount(in); grids > 0 && in; --grids) {
+    for (int grids = readGridCount(in); grids > 0; --grids) {
       openvdb::io::GridDescriptor descriptor;
       descriptor.read(in);
       end = std::max(end, static_cast<std::uintmax_t>(descriptor.getEndPos()));
@@ -102,7 +107,8 @@ class FileEnd : private openvdb::io::Archive {
 void refuse_cut_short(const std::string& path) {
   const std::uintmax_t size = std::filesystem::file_size(path), announced = FileEnd::announced(path);
   if (size < announced)
-    throw InputError(path + ": is cut short: holds " + std::to_string(size) + " of " + std::to_string(announced) + " bytes");
+    throw InputError(path + ": is cut short: holds " + std::to_string(size) + " of " + std::to_string(announced) +
+                     " bytes");
 }
 
 /// The grid that is meant: `wanted`, or the only suitable one.
@@ -118,7 +124,8 @@ std::string choose(const std::string& path, const std::string& wanted, const Dir
     throw InputError(path + ": holds no density (float or vec3s values of a fog volume)" + there_are);
   if (matches.empty()) throw InputError(path + ": has no grid \"" + wanted + "\"" + there_are);
   if (matches.size() > 1)
-    throw InputError(path + (wanted.empty() ? ": holds several densities" : ": holds several grids \"" + wanted + "\"") +
+    throw InputError(path +
+                     (wanted.empty() ? ": holds several densities" : ": holds several grids \"" + wanted + "\"") +
                      ", say which with the key grid" + there_are);
   if (!suits(*matches[0]->second))
     throw InputError(path + ": grid \"" + wanted + "\" is " + class_name(*matches[0]->second) +
@@ -143,17 +150,20 @@ FieldPtr vdb_field(const std::string& path, const std::string& grid, glm::vec3 s
   openvdb::GridBase::Ptr read;
   std::string name;
   try {
-    file.open(/*delayLoad=*/false);
     refuse_cut_short(path);
+    file.open(/*delayLoad=*/false);
     name = choose(path, grid, directory_of(file));
     read = file.readGrid(name);
   } catch (const openvdb::Exception& error) {
     throw InputError(path + ": can't be read as an OpenVDB file (" + error.what() + ")");
+  } catch (const std::ios_base::failure&) {
+    throw InputError(path + ": is cut short or can't be read");
   } catch (const std::bad_alloc&) {
     throw InputError(path + ": does not fit into memory, or is damaged");
   }
   const std::string text = "OpenVDB grid \"" + name + "\" of " + path;
-  for (auto make_as : {make<openvdb::FloatGrid>, make<openvdb::Vec3SGrid>, make<openvdb::DoubleGrid>, make<openvdb::Vec3DGrid>})
+  for (auto make_as :
+       {make<openvdb::FloatGrid>, make<openvdb::Vec3SGrid>, make<openvdb::DoubleGrid>, make<openvdb::Vec3DGrid>})
     if (FieldPtr field = make_as(read, text, scale, offset)) return field;
   throw InputError(path + ": grid \"" + name + "\" is of type " + read->valueType() + ": expected float or vec3s");
 }

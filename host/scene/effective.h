@@ -14,11 +14,13 @@ class EffectiveTable {
   void add(const std::string& key, const std::string& value) { add(key, value, value); }
   void add(const std::string& key, const std::string& value, const std::string& hashed);
   /// A table within this one, written inline.
-  void add(const std::string& key, const EffectiveTable& table) { add(key, table.inline_text(false), table.inline_text(true)); }
+  void add(const std::string& key, const EffectiveTable& table) {
+    add(key, table.inline_text(false), table.inline_text(true));
+  }
   void comment(const std::string& line) { comments_.push_back(line); }
 
-  std::string inline_text(bool hashed) const;    ///< `{ a = 1, b = 2 }`
-  std::string block_text(bool hashed) const;     ///< a line per key; comments are not hashed
+  std::string inline_text(bool hashed) const;  ///< `{ a = 1, b = 2 }`
+  std::string block_text(bool hashed) const;   ///< a line per key; comments are not hashed
 
  private:
   struct Entry {

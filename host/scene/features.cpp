@@ -12,9 +12,13 @@ namespace {
 
 constexpr float kSame = 1e-6f;  // relative: what float input and float means round to
 
-bool grey(glm::vec3 v) { return std::fabs(v.x - v.y) <= kSame * std::fabs(v.x) && std::fabs(v.x - v.z) <= kSame * std::fabs(v.x); }
+bool grey(glm::vec3 v) {
+  return std::fabs(v.x - v.y) <= kSame * std::fabs(v.x) && std::fabs(v.x - v.z) <= kSame * std::fabs(v.x);
+}
 
-float largest(glm::vec3 v) { return std::max({v.x, v.y, v.z}); }
+float largest(glm::vec3 v) {
+  return std::max({v.x, v.y, v.z});
+}
 
 /// The one colour that all sources share, as long as they do.
 class SharedColour {
@@ -40,7 +44,8 @@ bool index_jump(const MediumVolume& medium, int body) {
   for (int r = 0; r < medium.region_count(); ++r) {
     const Region& outside = medium.region(r);
     if (r == body || outside.opaque) continue;
-    if (inside.graded_index || outside.graded_index || std::fabs(inside.eta - outside.eta) > kSame * inside.eta) return true;
+    if (inside.graded_index || outside.graded_index || std::fabs(inside.eta - outside.eta) > kSame * inside.eta)
+      return true;
   }
   return false;
 }
@@ -123,11 +128,14 @@ SceneFeatures scene_features(const MediumVolume& medium, const LightList& lights
 std::vector<std::string> SceneFeatures::describe() const {
   std::vector<std::string> lines;
   lines.push_back("bodies: " + std::to_string(bodies));
-  lines.push_back(std::string("refraction: ") + (graded_index && interfaces ? "curved rays and interfaces (Snell, Fresnel)"
-                                                 : graded_index             ? "curved rays"
-                                                 : interfaces               ? "interfaces (Snell, Fresnel)"
-                                                                            : "none, straight rays"));
-  lines.push_back(std::string("scattering: ") + (!scattering ? "none, nothing to solve for" : anisotropic ? "anisotropic" : "isotropic"));
+  lines.push_back(std::string("refraction: ") + (graded_index && interfaces
+                                                     ? "curved rays and interfaces (Snell, Fresnel)"
+                                                 : graded_index ? "curved rays"
+                                                 : interfaces   ? "interfaces (Snell, Fresnel)"
+                                                                : "none, straight rays"));
+  lines.push_back(std::string("scattering: ") + (!scattering   ? "none, nothing to solve for"
+                                                 : anisotropic ? "anisotropic"
+                                                               : "isotropic"));
   lines.push_back(std::string("absorption: ") + (absorption ? "yes" : "none"));
   lines.push_back(std::string("emission: ") + (emission ? "yes" : "none"));
   lines.push_back(std::string("coefficients: ") + (heterogeneous ? "vary within a body" : "constant within each body"));

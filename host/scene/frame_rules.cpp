@@ -25,10 +25,15 @@ std::string bytes(double count) {
   return rounded(count, 3) + " " + units[u];
 }
 
-bool fixed(const FrameRequest& request, int face) { return request.faces[static_cast<std::size_t>(face)] != FaceBoundary::open; }
-bool exact(const FrameRequest& request, int axis) { return fixed(request, 2 * axis) && fixed(request, 2 * axis + 1); }
+bool fixed(const FrameRequest& request, int face) {
+  return request.faces[static_cast<std::size_t>(face)] != FaceBoundary::open;
+}
+bool exact(const FrameRequest& request, int axis) {
+  return fixed(request, 2 * axis) && fixed(request, 2 * axis + 1);
+}
 
-/// Blocks along an exact axis if its extent is a whole number of them (to a part in 10^5, float input being what it is).
+/// Blocks along an exact axis if its extent is a whole number of them (to a part in 10^5, float input being what it
+/// is).
 std::optional<double> whole_blocks(double extent, double voxel_size) {
   const double blocks = extent / (kBlockEdge * voxel_size);
   const double whole = std::max(std::round(blocks), 1.0);
@@ -49,19 +54,25 @@ double fit_exact_axes(const std::vector<double>& extents, double longest, double
   for (double blocks = 1; blocks <= 1024; ++blocks)
     if (fits(first / blocks)) {
       const std::string resolution = rounded(std::floor(longest * blocks / first * (1 + 1e-9)), 6);
-      if (blocks < start) below.push_back(resolution);
-      else if (above.size() < 3) above.push_back(resolution);
+      if (blocks < start)
+        below.push_back(resolution);
+      else if (above.size() < 3)
+        above.push_back(resolution);
     }
   if (below.empty() && above.empty())
     throw InputError(
-        "mirror and periodic axes keep their exact extent, which must be a whole number of 8-voxel blocks, but no voxel size "
+        "mirror and periodic axes keep their exact extent, which must be a whole number of 8-voxel blocks, but no "
+        "voxel size "
         "divides them all: change min or max so that these extents have a simple ratio");
   std::string list;
-  for (std::size_t i = below.size() > 2 ? below.size() - 2 : 0; i < below.size(); ++i) list += (list.empty() ? "" : ", ") + below[i];
+  for (std::size_t i = below.size() > 2 ? below.size() - 2 : 0; i < below.size(); ++i)
+    list += (list.empty() ? "" : ", ") + below[i];
   for (const std::string& resolution : above) list += (list.empty() ? "" : ", ") + resolution;
   throw InputError(
-      "mirror and periodic axes keep their exact extent, which must be a whole number of 8-voxel blocks: resolutions that "
-      "work are " + list);
+      "mirror and periodic axes keep their exact extent, which must be a whole number of 8-voxel blocks: resolutions "
+      "that "
+      "work are " +
+      list);
 }
 
 void refuse_too_large(const FrameRequest& request, const double voxels[3], double voxel_size) {
@@ -72,8 +83,9 @@ void refuse_too_large(const FrameRequest& request, const double voxels[3], doubl
   const double longest = std::max({voxels[0], voxels[1], voxels[2]});
   std::string text = rounded(voxels[0], 7) + " x " + rounded(voxels[1], 7) + " x " + rounded(voxels[2], 7) +
                      " voxels would need about " + bytes(need) + " of memory; the limit is " + bytes(kMostBytes) + ": ";
-  throw InputError(text + (request.resolution ? "use a resolution of at most about " + rounded(std::floor(longest * shrink), 6)
-                                              : "use a voxel size of at least about " + rounded(voxel_size / shrink, 3)));
+  throw InputError(text + (request.resolution
+                               ? "use a resolution of at most about " + rounded(std::floor(longest * shrink), 6)
+                               : "use a voxel size of at least about " + rounded(voxel_size / shrink, 3)));
 }
 
 }  // namespace

@@ -26,7 +26,9 @@ std::string hex(std::uint64_t hash) {
 
 }  // namespace
 
-std::string hash_text(const std::string& text) { return hex(fnv(kBasis, text.data(), text.size())); }
+std::string hash_text(const std::string& text) {
+  return hex(fnv(kBasis, text.data(), text.size()));
+}
 
 std::string hash_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

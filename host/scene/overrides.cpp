@@ -25,12 +25,14 @@ void merge_element(toml::array& into, const std::string& index, toml::node& valu
   const auto [end, error] = std::from_chars(index.data(), index.data() + index.size(), i);
   if (error != std::errc() || end != index.data() + index.size() || i >= into.size())
     throw InputError(option + ": " + path + " is a list of " + std::to_string(into.size()) + ": expected " +
-                     (into.empty() ? "no index" : "an index from 0 to " + std::to_string(into.size() - 1)) + ", not " + index);
+                     (into.empty() ? "no index" : "an index from 0 to " + std::to_string(into.size() - 1)) + ", not " +
+                     index);
   toml::table* table = value.as_table();
   if (table && !table->is_inline() && into[i].is_table()) {
     merge(*into[i].as_table(), *table, option, path + "." + index);
   } else if (table && !table->is_inline() && into[i].is_array()) {
-    for (auto&& [key, sub] : *table) merge_element(*into[i].as_array(), std::string(key.str()), sub, option, path + "." + index);
+    for (auto&& [key, sub] : *table)
+      merge_element(*into[i].as_array(), std::string(key.str()), sub, option, path + "." + index);
   } else {
     value.visit([&](auto& node) { into.replace(into.cbegin() + static_cast<std::ptrdiff_t>(i), std::move(node)); });
   }
@@ -45,7 +47,8 @@ void merge(toml::table& into, toml::table& from, const std::string& option, cons
     if (path_goes_on && present && present->is_table()) {
       merge(*present->as_table(), *table, option, here);
     } else if (path_goes_on && present && present->is_array()) {
-      for (auto&& [index, sub] : *table) merge_element(*present->as_array(), std::string(index.str()), sub, option, here);
+      for (auto&& [index, sub] : *table)
+        merge_element(*present->as_array(), std::string(index.str()), sub, option, here);
     } else {
       assign(into, key, value);
     }

@@ -7,8 +7,8 @@
 
 namespace turbid::scene {
 
-/// Applies -D settings in order, then --resolution, --solver and --seed. Nodes that they bring say in their source which
-/// option they came from. Throws InputError naming the option.
+/// Applies -D settings in order, then --resolution, --solver and --seed. Nodes that they bring say in their source
+/// which option they came from. Throws InputError naming the option.
 void apply_overrides(toml::table& root, const SceneOverrides& overrides);
 
 }  // namespace turbid::scene

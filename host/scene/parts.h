@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parts of a scene, one reading function each, called by read_scene in this order. Private to host/scene.
 #pragma once
+#include <toml++/toml.h>
+
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <toml++/toml.h>
 #include <vector>
 
 #include "host/scene/effective.h"
@@ -15,7 +16,7 @@ namespace turbid::scene {
 
 /// What the parts share while a scene is read.
 struct Reading {
-  std::filesystem::path folder;        ///< of the scene file: relative paths start here
+  std::filesystem::path folder;  ///< of the scene file: relative paths start here
   Scene scene;
   EffectiveScene effective;
 
@@ -30,7 +31,7 @@ struct DomainSpec {
   const toml::node* size_node = nullptr;  ///< resolution or voxel_size; null: default
   std::optional<double> resolution, voxel_size;
   std::optional<Box3> box;
-  std::string ambient;                 ///< material name; empty: vacuum
+  std::string ambient;  ///< material name; empty: vacuum
 };
 
 /// [domain]: sets faces and smoothing.
@@ -53,8 +54,8 @@ void read_settings(Reading& reading, const toml::table& root);
 /// Colour2 and edge of `checker = { colour, size }`; a plain colour without it.
 void read_checker(const Reading& reading, const TableReader& table, glm::vec3 colour, glm::vec3& colour2, float& size);
 
-/// The file that a key names, as an absolute path; an error with its place if there is no such file. Recorded under `key`,
-/// and hashed by its content.
+/// The file that a key names, as an absolute path; an error with its place if there is no such file. Recorded under
+/// `key`, and hashed by its content.
 std::string read_file_key(const Reading& reading, const TableReader& table, std::string_view key);
 
 /// The table under a key of the top level; null if there is none.
@@ -64,10 +65,10 @@ std::vector<const toml::table*> tables_at(const toml::table& root, std::string_v
 
 /// One of a material's coefficients: read_field.cpp.
 struct FieldRule {
-  Range range;                         ///< of constant values
+  Range range;  ///< of constant values
   float fallback = 0;
-  bool colour = true;                  ///< may differ for red, green, blue
-  bool index_profiles = false;         ///< { field = "luneburg", ... } is allowed
+  bool colour = true;           ///< may differ for red, green, blue
+  bool index_profiles = false;  ///< { field = "luneburg", ... } is allowed
 };
 FieldPtr read_field(const Reading& reading, const TableReader& material, const std::string& key, const FieldRule& rule);
 

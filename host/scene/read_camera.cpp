@@ -48,7 +48,8 @@ void read_camera(Reading& reading, const toml::table& root) {
     scene.has_camera = true;
   }
   if (const toml::table* node = table_at(root, "ground"))
-    scene.surroundings.ground = read_ground(reading, TableReader(*node, "[ground]", reading.effective.section("[ground]")));
+    scene.surroundings.ground =
+        read_ground(reading, TableReader(*node, "[ground]", reading.effective.section("[ground]")));
 
   static const toml::table none;
   const toml::table* node = table_at(root, "film");

@@ -16,7 +16,8 @@ const char* const kFaceNames[6] = {"x_min", "x_max", "y_min", "y_max", "z_min", 
 
 FaceBoundary face_of(const TableReader& table, std::string_view key) {
   return table.choice<FaceBoundary>(
-      key, {{"open", FaceBoundary::open}, {"mirror", FaceBoundary::mirror}, {"periodic", FaceBoundary::periodic}}, "open");
+      key, {{"open", FaceBoundary::open}, {"mirror", FaceBoundary::mirror}, {"periodic", FaceBoundary::periodic}},
+      "open");
 }
 
 std::string word_for(FaceBoundary face) {
@@ -41,7 +42,9 @@ std::array<FaceBoundary, 6> read_boundary(const TableReader& domain) {
       table.fail(name, "an axis is periodic at both of its faces or at none");
     }
   } else if (domain.has("boundary") && !domain.find("boundary")->is_string()) {
-    domain.fail("boundary", "expected \"open\", \"mirror\", \"periodic\" or a table such as { x = \"periodic\", y_min = \"mirror\" }");
+    domain.fail(
+        "boundary",
+        "expected \"open\", \"mirror\", \"periodic\" or a table such as { x = \"periodic\", y_min = \"mirror\" }");
   } else {
     faces.fill(face_of(TableReader(domain), "boundary"));
     return faces;
@@ -52,9 +55,12 @@ std::array<FaceBoundary, 6> read_boundary(const TableReader& domain) {
   return faces;
 }
 
-std::string box_text(const Box3& box) { return text_of(box.lower) + " to " + text_of(box.upper); }
+std::string box_text(const Box3& box) {
+  return text_of(box.lower) + " to " + text_of(box.upper);
+}
 
-// Objects that an explicit domain misses or cuts. `sealed`: the axis ends in a mirror or repeats, so that bodies may go on.
+// Objects that an explicit domain misses or cuts. `sealed`: the axis ends in a mirror or repeats, so that bodies may go
+// on.
 void check_objects(Reading& reading, const Box3& domain, const std::vector<std::string>& places) {
   const MediumDescription& medium = reading.scene.medium;
   for (std::size_t i = 0; i < medium.bodies.size(); ++i) {
@@ -72,8 +78,11 @@ void check_objects(Reading& reading, const Box3& domain, const std::vector<std::
       largest_ratio = std::max<double>(largest_ratio, body.size()[axis] / domain.size()[axis]);
     }
     if (!cut) continue;
-    std::string text = places[i] + " is cut by the domain: it reaches from " + box_text(body) + ", the domain from " + box_text(domain);
-    if (largest_ratio > 4) text += "; it is " + text_of(std::round(static_cast<float>(largest_ratio))) + " times as large: is its scale right?";
+    std::string text = places[i] + " is cut by the domain: it reaches from " + box_text(body) + ", the domain from " +
+                       box_text(domain);
+    if (largest_ratio > 4)
+      text +=
+          "; it is " + text_of(std::round(static_cast<float>(largest_ratio))) + " times as large: is its scale right?";
     reading.scene.warnings.push_back(text);
   }
 }
@@ -103,7 +112,8 @@ DomainSpec read_domain(Reading& reading, const toml::table& root) {
   if (table.has("voxel_size"))
     spec.voxel_size = table.number("voxel_size", Range::above(0, unit));
   else
-    spec.resolution = static_cast<double>(table.integer("resolution", Range::at_least(8, "voxels"), kDefaultResolution));
+    spec.resolution =
+        static_cast<double>(table.integer("resolution", Range::at_least(8, "voxels"), kDefaultResolution));
   spec.size_node = table.find(spec.voxel_size ? "voxel_size" : "resolution");
   if (table.has("min") != table.has("max"))
     table.fail(table.has("min") ? "min" : "max", "expected both min and max, or neither");
@@ -133,17 +143,18 @@ void fix_frame(Reading& reading, const DomainSpec& spec, const std::vector<std::
     answer = make_frame(request);
   } catch (const InputError& error) {
     if (spec.size_node) fail(*spec.size_node, spec.voxel_size ? "voxel_size" : "resolution", error.what());
-    throw InputError((spec.table ? place_of(spec.table->source()) : scene.path) + ": [domain] resolution = " +
-                     std::to_string(kDefaultResolution) + " (default): " + error.what());
+    throw InputError((spec.table ? place_of(spec.table->source()) : scene.path) +
+                     ": [domain] resolution = " + std::to_string(kDefaultResolution) + " (default): " + error.what());
   }
   scene.medium.frame = answer.frame;
   if (spec.voxel_size && answer.frame.voxel_size < (1 - 1e-5) * answer.asked_voxel_size)
-    scene.warnings.push_back(place_of(spec.size_node->source()) + ": voxel_size = " + text_of(*spec.size_node) + " became " +
-                             text_of(answer.frame.voxel_size) + " so that mirror and periodic extents are whole blocks");
+    scene.warnings.push_back(place_of(spec.size_node->source()) + ": voxel_size = " + text_of(*spec.size_node) +
+                             " became " + text_of(answer.frame.voxel_size) +
+                             " so that mirror and periodic extents are whole blocks");
   if (spec.box) check_objects(reading, {answer.frame.origin, answer.frame.upper()}, object_places);
   const glm::ivec3 n = answer.frame.voxels;
-  spec.effective->comment(std::to_string(n.x) + " x " + std::to_string(n.y) + " x " + std::to_string(n.z) + " voxels of " +
-                          text_of(answer.frame.voxel_size) + " " + scene.unit + ", from " +
+  spec.effective->comment(std::to_string(n.x) + " x " + std::to_string(n.y) + " x " + std::to_string(n.z) +
+                          " voxels of " + text_of(answer.frame.voxel_size) + " " + scene.unit + ", from " +
                           box_text({answer.frame.origin, answer.frame.upper()}));
 }
 

@@ -21,7 +21,8 @@ FieldPtr with_place(const toml::node& node, const std::string& key, Make make) {
 FieldPtr read_expression(const TableReader& table, const std::string& key, const FieldRule& rule) {
   table.allow({"expression"});
   const toml::node& node = table.need("expression");
-  const std::string expected = rule.colour ? "expected a text, or three for red, green, blue" : "expected a text in quotes";
+  const std::string expected =
+      rule.colour ? "expected a text, or three for red, green, blue" : "expected a text in quotes";
   std::array<std::string, 3> texts;
   if (const auto* text = node.as_string()) {
     texts.fill(text->get());
@@ -33,7 +34,8 @@ FieldPtr read_expression(const TableReader& table, const std::string& key, const
       if (!(*array)[c].is_string()) fail((*array)[c], "expression[" + std::to_string(c) + "]", expected);
       texts[c] = (*array)[c].as_string()->get();
     }
-    table.effective().add("expression", std::string("[") + toml_string(texts[0]) + ", " + toml_string(texts[1]) + ", " + toml_string(texts[2]) + "]");
+    table.effective().add("expression", std::string("[") + toml_string(texts[0]) + ", " + toml_string(texts[1]) + ", " +
+                                            toml_string(texts[2]) + "]");
   }
   return with_place(node, key, [&] { return expression_field(texts); });
 }
@@ -77,7 +79,8 @@ FieldPtr read_index_profile(const Reading& reading, const TableReader& table) {
   return linear_index(centre, eta, table.vector("gradient", Range::any(reading.per_length())));
 }
 
-FieldPtr read_field_table(const Reading& reading, const TableReader& table, const std::string& key, const FieldRule& rule) {
+FieldPtr read_field_table(const Reading& reading, const TableReader& table, const std::string& key,
+                          const FieldRule& rule) {
   if (table.has("expression")) return read_expression(table, key, rule);
   if (table.has("vdb")) return read_vdb(reading, table, key, rule);
   if (table.has("field") && rule.index_profiles) return read_index_profile(reading, table);
@@ -89,11 +92,13 @@ FieldPtr read_field_table(const Reading& reading, const TableReader& table, cons
 
 }  // namespace
 
-FieldPtr read_field(const Reading& reading, const TableReader& material, const std::string& key, const FieldRule& rule) {
+FieldPtr read_field(const Reading& reading, const TableReader& material, const std::string& key,
+                    const FieldRule& rule) {
   if (!material.has(key) || !material.find(key)->is_table()) {
     if (material.has(key) && !material.find(key)->is_number() && !(rule.colour && material.find(key)->is_array()))
-      material.fail(key, std::string("expected a number ") + rule.range.text() + (rule.colour ? ", [red, green, blue]" : "") +
-                             ", { expression = ... }" + (rule.index_profiles ? ", { field = ... }" : "") + " or { vdb = ... }");
+      material.fail(key, std::string("expected a number ") + rule.range.text() +
+                             (rule.colour ? ", [red, green, blue]" : "") + ", { expression = ... }" +
+                             (rule.index_profiles ? ", { field = ... }" : "") + " or { vdb = ... }");
     return constant_field(rule.colour ? material.colour(key, rule.range, glm::vec3(rule.fallback))
                                       : glm::vec3(material.number(key, rule.range, rule.fallback)));
   }

@@ -67,8 +67,9 @@ int find_material(const Reading& reading, const toml::node& node, std::string_vi
   const std::string name = node.as_string()->get();
   for (std::size_t i = 0; i < names.size(); ++i)
     if (names[i] == name) return static_cast<int>(i);
-  fail(node, key, "no such material" + did_you_mean(name, names) + "; " +
-                      (names.empty() ? "write [material." + key_text(name) + "]" : "there are " + list_of(names, true)));
+  fail(node, key,
+       "no such material" + did_you_mean(name, names) + "; " +
+           (names.empty() ? "write [material." + key_text(name) + "]" : "there are " + list_of(names, true)));
 }
 
 }  // namespace turbid::scene

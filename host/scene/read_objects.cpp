@@ -35,7 +35,8 @@ Standing read_standing(const Reading& reading, const TableReader& table, const B
   if (table.has("scale") && table.has("fit")) table.fail("fit", "scale is given as well: expected one of the two");
   if (table.has("fit")) {
     const glm::vec3 size = box.size();
-    standing.placement.scale = table.number("fit", Range::above(0, reading.scene.unit)) / std::max({size.x, size.y, size.z});
+    standing.placement.scale =
+        table.number("fit", Range::above(0, reading.scene.unit)) / std::max({size.x, size.y, size.z});
   } else {
     standing.placement.scale = table.number("scale", Range::above(0), 1.0f);
   }
@@ -49,7 +50,8 @@ Standing read_standing(const Reading& reading, const TableReader& table, const B
 }
 
 Solid read_mesh_object(Reading& reading, const TableReader& table) {
-  table.allow({"name", "mesh", "material", "scale", "fit", "origin", "rotate", "translate", "interface"}, "an object with a mesh");
+  table.allow({"name", "mesh", "material", "scale", "fit", "origin", "rotate", "translate", "interface"},
+              "an object with a mesh");
   const std::string path = read_file_key(reading, table, "mesh");
   TriangleMesh mesh;
   std::vector<std::string> repairs;
@@ -90,7 +92,9 @@ Solid read_shape_object(const Reading& reading, const TableReader& table) {
   } else {
     allow_also({"radius", "height"});
     const float radius = table.number("radius", length);
-    make = [radius, height = table.number("height", length)](const Placement& p) { return make_cylinder(radius, height, p); };
+    make = [radius, height = table.number("height", length)](const Placement& p) {
+      return make_cylinder(radius, height, p);
+    };
   }
   Standing standing = read_standing(reading, table, {});
   if (standing.origin == Origin::base) {
@@ -120,9 +124,11 @@ std::string read_file_key(const Reading& reading, const TableReader& table, std:
   const std::filesystem::path path = std::filesystem::absolute(reading.folder / given).lexically_normal();
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) {
-    const bool bundled = given.is_relative() && given.begin()->string() == "meshes";
-    fail(node, key, "no such file, " + path.string() +
-                        (bundled ? "; run scripts/setup, which fetches the meshes of the bundled scenes" : ""));
+    const auto beside = path.lexically_relative(std::filesystem::absolute(reading.folder).lexically_normal());
+    const bool bundled = beside.begin() != beside.end() && *beside.begin() == "meshes";
+    fail(node, key,
+         "no such file, " + path.string() +
+             (bundled ? "; run scripts/setup, which fetches the meshes of the bundled scenes" : ""));
   }
   if (!std::filesystem::is_regular_file(path, ignored)) fail(node, key, path.string() + " is not a regular file");
   try {
@@ -138,8 +144,8 @@ std::vector<std::string> read_objects(Reading& reading, const toml::table& root)
   for (const toml::table* object : tables_at(root, "object")) {
     const TableReader table(*object, "[[object]]", reading.effective.section("[[object]]"));
     if (table.has("mesh") == table.has("shape")) {
-      table.allow({"name", "mesh", "shape", "radius", "size", "height", "material", "scale", "fit", "origin", "rotate", "translate",
-                   "interface"});
+      table.allow({"name", "mesh", "shape", "radius", "size", "height", "material", "scale", "fit", "origin", "rotate",
+                   "translate", "interface"});
       if (table.has("mesh")) table.fail("shape", "mesh is given as well: expected one of the two");
       throw InputError(table.place() + ": [[object]] lacks the key mesh or shape");
     }
@@ -147,10 +153,12 @@ std::vector<std::string> read_objects(Reading& reading, const toml::table& root)
     body.solid = table.has("mesh") ? read_mesh_object(reading, table) : read_shape_object(reading, table);
     body.material = find_material(reading, table.need("material"), "material");
     table.text("material");
-    const std::string kind = table.has("mesh") ? std::filesystem::path(table.find("mesh")->as_string()->get()).stem().string()
-                                               : table.find("shape")->as_string()->get();
+    const std::string kind = table.has("mesh")
+                                 ? std::filesystem::path(table.find("mesh")->as_string()->get()).stem().string()
+                                 : table.find("shape")->as_string()->get();
     body.name = table.text("name", unused_name(reading, kind));
-    body.surface = table.choice<SurfaceKind>("interface", {{"sharp", SurfaceKind::sharp}, {"smooth", SurfaceKind::smooth}}, "sharp");
+    body.surface = table.choice<SurfaceKind>("interface",
+                                             {{"sharp", SurfaceKind::sharp}, {"smooth", SurfaceKind::smooth}}, "sharp");
     places.push_back(table.place() + ": object " + toml_string(body.name));
     reading.scene.medium.bodies.push_back(std::move(body));
   }

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads a scene file: parses it, applies the command line's changes, reads part by part, checks the whole. See scene.h.
-#include "host/scene/scene.h"
-
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -9,6 +7,7 @@
 #include "host/base/errors.h"
 #include "host/scene/overrides.h"
 #include "host/scene/parts.h"
+#include "host/scene/scene.h"
 #include "host/scene/toml_text.h"
 
 namespace turbid {
@@ -25,8 +24,7 @@ std::vector<const toml::table*> tables_at(const toml::table& root, std::string_v
   const toml::node* node = root.get(key);
   if (!node) return tables;
   const std::string expected = "expected a list of tables, [[" + std::string(key) + "]]";
-  if (node->is_table())
-    throw InputError(place_of(node->source()) + ": [" + std::string(key) + "]: " + expected);
+  if (node->is_table()) throw InputError(place_of(node->source()) + ": [" + std::string(key) + "]: " + expected);
   if (!node->is_array()) fail(*node, key, expected);
   for (const toml::node& element : *node->as_array()) {
     if (!element.is_table()) fail(element, key, expected);
@@ -40,7 +38,8 @@ namespace {
 toml::table parse(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) throw InputError(path + ": no such file");
-  if (std::filesystem::is_directory(path, ignored)) throw InputError(path + ": is a folder, expected a scene file (.toml)");
+  if (std::filesystem::is_directory(path, ignored))
+    throw InputError(path + ": is a folder, expected a scene file (.toml)");
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (!file) throw InputError(path + ": can't be read");
@@ -57,8 +56,8 @@ bool takes_part(const Material& material) {
     const auto constant = field->constant();
     return constant && *constant == glm::vec3(value);
   };
-  return !material.opaque && !(absent(material.sigma_s, 0) && absent(material.sigma_a, 0) && absent(material.emission, 0) &&
-                               material.eta->constant());
+  return !material.opaque && !(absent(material.sigma_s, 0) && absent(material.sigma_a, 0) &&
+                               absent(material.emission, 0) && material.eta->constant());
 }
 
 bool shines(const Material& material) {
@@ -69,23 +68,29 @@ bool shines(const Material& material) {
 void check_whole(Reading& reading, const DomainSpec& domain) {
   Scene& scene = reading.scene;
   const MediumDescription& medium = scene.medium;
-  const bool ambient = medium.ambient_material >= 0 && takes_part(medium.materials[static_cast<std::size_t>(medium.ambient_material)]);
+  const bool ambient =
+      medium.ambient_material >= 0 && takes_part(medium.materials[static_cast<std::size_t>(medium.ambient_material)]);
   if (medium.bodies.empty() && !ambient)
-    throw InputError(scene.path + ": holds nothing that light could meet: add an [[object]], or give [domain] a material that "
-                                  "scatters, absorbs, emits or bends light");
+    throw InputError(scene.path +
+                     ": holds nothing that light could meet: add an [[object]], or give [domain] a material that "
+                     "scatters, absorbs, emits or bends light");
   if (ambient && !domain.box && !medium.bodies.empty())
-    scene.warnings.push_back(scene.path + ": the domain's own medium ends two voxels beyond the objects; give [domain] min and max to "
-                                          "say how far it reaches");
+    scene.warnings.push_back(
+        scene.path +
+        ": the domain's own medium ends two voxels beyond the objects; give [domain] min and max to "
+        "say how far it reaches");
   std::vector<bool> used(medium.materials.size());
   for (const Body& body : medium.bodies) used[static_cast<std::size_t>(body.material)] = true;
   if (medium.ambient_material >= 0) used[static_cast<std::size_t>(medium.ambient_material)] = true;
   bool shining = false;
   for (std::size_t i = 0; i < used.size(); ++i) {
-    if (!used[i]) scene.warnings.push_back(scene.path + ": material " + toml_string(medium.materials[i].name) + " is not used");
+    if (!used[i])
+      scene.warnings.push_back(scene.path + ": material " + toml_string(medium.materials[i].name) + " is not used");
     shining = shining || (used[i] && shines(medium.materials[i]));
   }
   if (scene.has_camera && scene.lights.empty() && !shining)
-    throw InputError(scene.path + ": has a camera but no light: add a [[light]], or an object whose material has emission");
+    throw InputError(scene.path +
+                     ": has a camera but no light: add a [[light]], or an object whose material has emission");
 }
 
 }  // namespace
@@ -102,7 +107,8 @@ Scene read_scene(const std::string& path, const SceneOverrides& overrides) {
   scene.path = path;
   scene.name = std::filesystem::path(path).stem().string();
   const TableReader top(root, "a scene", reading.effective.section(""));
-  top.allow({"unit", "background", "domain", "material", "object", "light", "camera", "ground", "film", "solver", "view"});
+  top.allow(
+      {"unit", "background", "domain", "material", "object", "light", "camera", "ground", "film", "solver", "view"});
   scene.unit = top.text("unit", scene.unit);
   if (scene.unit.size() > 16 || scene.unit.find_first_of("\n\r\t[]") != std::string::npos)
     top.fail("unit", "expected the short name of a length, such as \"mm\"");

@@ -76,11 +76,12 @@ void read_settings(Reading& reading, const toml::table& root) {
   solver.allow({"name", "tolerance", "seed", "march", "lattice", "steady"});
   s.solver = solver.word("name", {"steady", "lattice"}, s.solver);
   const float tolerance = solver.number("tolerance", Range::closed(1e-6, 0.1), s.steady.tolerance);
-  s.seed = static_cast<std::uint64_t>(
-      solver.integer("seed", Range::at_least(0), static_cast<std::int64_t>(s.seed)));
+  s.seed = static_cast<std::uint64_t>(solver.integer("seed", Range::at_least(0), static_cast<std::int64_t>(s.seed)));
   s.march = read_march({sub_table(solver, "march"), "[solver.march]", effective.section("[solver.march]")});
-  s.lattice = read_lattice({sub_table(solver, "lattice"), "[solver.lattice]", effective.section("[solver.lattice]")}, tolerance);
-  s.steady = read_steady({sub_table(solver, "steady"), "[solver.steady]", effective.section("[solver.steady]")}, tolerance);
+  s.lattice = read_lattice({sub_table(solver, "lattice"), "[solver.lattice]", effective.section("[solver.lattice]")},
+                           tolerance);
+  s.steady =
+      read_steady({sub_table(solver, "steady"), "[solver.steady]", effective.section("[solver.steady]")}, tolerance);
   node = table_at(root, "view");
   reading.scene.view = read_view({node ? *node : kNone, "[view]", effective.section("[view]")});
 }

@@ -27,12 +27,15 @@ bool Range::contains(double value) const {
   return (lower_open ? value > lower : value >= lower) && (upper_open ? value < upper : value <= upper);
 }
 
-bool Range::unbounded() const { return std::isinf(lower) && std::isinf(upper); }
+bool Range::unbounded() const {
+  return std::isinf(lower) && std::isinf(upper);
+}
 
 std::string Range::text() const {
   std::string text;
   if (std::isfinite(lower) && std::isfinite(upper))
-    text = std::string("in ") + (lower_open ? "(" : "[") + bound(lower) + ", " + bound(upper) + (upper_open ? ")" : "]");
+    text =
+        std::string("in ") + (lower_open ? "(" : "[") + bound(lower) + ", " + bound(upper) + (upper_open ? ")" : "]");
   else if (std::isfinite(lower))
     text = (lower_open ? "> " : ">= ") + bound(lower);
   else if (std::isfinite(upper))
@@ -62,8 +65,9 @@ glm::vec3 vector_of(const toml::node& node, const std::string& key, const Range&
   if (grey && node.is_number()) return glm::vec3(number_of(node, key, range));
   const toml::array* array = node.as_array();
   if (!array || array->size() != 3)
-    fail(node, key, with(grey ? "expected a number or [red, green, blue]" : "expected [x, y, z]",
-                         range.unbounded() ? Range::any(range.unit) : range));
+    fail(node, key,
+         with(grey ? "expected a number or [red, green, blue]" : "expected [x, y, z]",
+              range.unbounded() ? Range::any(range.unit) : range));
   glm::vec3 value;
   for (int c = 0; c < 3; ++c)
     value[c] = number_of((*array)[static_cast<std::size_t>(c)], key + "[" + std::to_string(c) + "]", range);
@@ -78,12 +82,14 @@ void TableReader::allow(const std::vector<std::string>& keys, const std::string&
     if (!first || begin(key) < begin(*first)) first = &key;
   }
   if (!first) return;
-  throw InputError(place_of(first->source()) + ": " + key_text(first->str()) + " = " + text_of(*table_.get(first->str())) +
-                   ": unknown key" + did_you_mean(first->str(), keys) + "; " + (what.empty() ? what_ : what) + " has " +
-                   list_of(keys, false));
+  throw InputError(place_of(first->source()) + ": " + key_text(first->str()) + " = " +
+                   text_of(*table_.get(first->str())) + ": unknown key" + did_you_mean(first->str(), keys) + "; " +
+                   (what.empty() ? what_ : what) + " has " + list_of(keys, false));
 }
 
-std::string TableReader::place() const { return place_of(table_.source()); }
+std::string TableReader::place() const {
+  return place_of(table_.source());
+}
 
 const toml::node& TableReader::need(std::string_view key) const {
   if (const toml::node* node = table_.get(key)) return *node;
@@ -100,7 +106,8 @@ float TableReader::number(std::string_view key, const Range& range, std::optiona
   return value;
 }
 
-std::int64_t TableReader::integer(std::string_view key, const Range& range, std::optional<std::int64_t> fallback) const {
+std::int64_t TableReader::integer(std::string_view key, const Range& range,
+                                  std::optional<std::int64_t> fallback) const {
   std::int64_t value = 0;
   if (!has(key) && fallback) {
     value = *fallback;

@@ -2,6 +2,8 @@
 // A strict reader of one TOML table: every value is checked for type and range and recorded in the effective scene, and
 // every mistake is an InputError `file:line:column: key = found: expected`. Private to host/scene.
 #pragma once
+#include <toml++/toml.h>
+
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <initializer_list>
@@ -9,7 +11,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <toml++/toml.h>
 #include <utility>
 #include <vector>
 
@@ -21,19 +22,27 @@ namespace turbid::scene {
 struct Range {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
-  bool lower_open = false, upper_open = false;   ///< the bound itself is not allowed
-  std::string unit;                              ///< for messages; empty: none
+  bool lower_open = false, upper_open = false;  ///< the bound itself is not allowed
+  std::string unit;                             ///< for messages; empty: none
 
   static Range any(std::string unit = "") { return {.unit = std::move(unit)}; }
   static Range at_least(double lower, std::string unit = "") { return {.lower = lower, .unit = std::move(unit)}; }
-  static Range above(double lower, std::string unit = "") { return {.lower = lower, .lower_open = true, .unit = std::move(unit)}; }
-  static Range closed(double lower, double upper, std::string unit = "") { return {lower, upper, false, false, std::move(unit)}; }
-  static Range half_open(double lower, double upper, std::string unit = "") { return {lower, upper, true, false, std::move(unit)}; }
-  static Range open(double lower, double upper, std::string unit = "") { return {lower, upper, true, true, std::move(unit)}; }
+  static Range above(double lower, std::string unit = "") {
+    return {.lower = lower, .lower_open = true, .unit = std::move(unit)};
+  }
+  static Range closed(double lower, double upper, std::string unit = "") {
+    return {lower, upper, false, false, std::move(unit)};
+  }
+  static Range half_open(double lower, double upper, std::string unit = "") {
+    return {lower, upper, true, false, std::move(unit)};
+  }
+  static Range open(double lower, double upper, std::string unit = "") {
+    return {lower, upper, true, true, std::move(unit)};
+  }
 
   bool contains(double value) const;
   bool unbounded() const;
-  std::string text() const;                      ///< `>= 0 [1/mm]`, `in (0, 170] [degrees]`
+  std::string text() const;  ///< `>= 0 [1/mm]`, `in (0, 170] [degrees]`
 };
 
 class TableReader {
@@ -75,7 +84,8 @@ class TableReader {
       if (known == name) return value;
     return words.begin()->second;  // not reached: word() accepts known names only
   }
-  std::string word(std::string_view key, const std::vector<std::string>& words, std::optional<std::string> fallback = {}) const;
+  std::string word(std::string_view key, const std::vector<std::string>& words,
+                   std::optional<std::string> fallback = {}) const;
 
   /// Throws `place: key = found: expected`.
   [[noreturn]] void fail(std::string_view key, const std::string& expected) const;

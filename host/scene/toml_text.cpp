@@ -51,15 +51,20 @@ int distance(std::string_view a, std::string_view b) {
   for (std::size_t i = 1; i <= a.size(); ++i)
     for (std::size_t j = 1; j <= b.size(); ++j) {
       d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
     }
   return d[a.size()][b.size()];
 }
 
 }  // namespace
 
-std::string text_of(float value) { return shortest(value); }
-std::string text_of(double value) { return shortest(value); }
+std::string text_of(float value) {
+  return shortest(value);
+}
+std::string text_of(double value) {
+  return shortest(value);
+}
 std::string text_of(glm::vec3 value) {
   return std::string("[") + text_of(value.x) + ", " + text_of(value.y) + ", " + text_of(value.z) + "]";
 }
@@ -84,7 +89,9 @@ std::string toml_string(std::string_view text) {
   return out + "\"";
 }
 
-std::string key_text(std::string_view key) { return bare(key) ? std::string(key) : toml_string(key); }
+std::string key_text(std::string_view key) {
+  return bare(key) ? std::string(key) : toml_string(key);
+}
 
 std::string text_of(const toml::node& node, std::size_t longest) {
   std::string text = whole_text_of(node);

@@ -18,7 +18,8 @@ std::string EffectiveTable::inline_text(bool hashed) const {
 
 std::string EffectiveTable::block_text(bool hashed) const {
   std::string text;
-  for (const Entry& entry : entries_) text += key_text(entry.key) + " = " + (hashed ? entry.hashed : entry.value) + "\n";
+  for (const Entry& entry : entries_)
+    text += key_text(entry.key) + " = " + (hashed ? entry.hashed : entry.value) + "\n";
   if (!hashed)
     for (const std::string& line : comments_) text += "# " + line + "\n";
   return text;

@@ -2,13 +2,15 @@
 // Owns the ray buffers and the fixed-point sums of the marching pass.
 #include "host/transport/march.h"
 
+#include "host/transport/ground_light.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace turbid {
 namespace {
 
-constexpr int kGroundTexels = 512;
+constexpr int kGroundTexels = 768;     // at the most, per side
 constexpr float kGroundReach = 3.0f;  // the collecting map spans this many domain sizes
 
 glm::dvec3 colour_at(const std::vector<std::int64_t>& sums, std::size_t index, double scale) {
@@ -34,15 +36,18 @@ March::March(cl::Session& session, const DeviceMedium& medium, const MarchSettin
     const glm::vec2 centre = 0.5f * glm::vec2(frame.voxels.x, frame.voxels.z);
     params_.ground = 1;
     params_.ground_height = (surroundings.ground->height - frame.origin.y) / frame.voxel_size;
-    params_.ground_size = kGroundTexels;
-    params_.ground_texel = extent / kGroundTexels;
+    // Texels of two ray spacings where light goes straight on; see smooth_ground_light for where it spreads.
+    params_.ground_texel = std::max(2.0f / std::sqrt(settings.rays_per_face), extent / kGroundTexels);
+    params_.ground_size = static_cast<int>(std::ceil(extent / params_.ground_texel));
     params_.ground_origin[0] = centre.x - 0.5f * extent;
     params_.ground_origin[1] = centre.y - 0.5f * extent;
   }
   const std::size_t channels = medium.features.channels;
   deposit_ = session.allocate<std::int64_t>(medium.source_tiles.size() * TURBID_TILE_NODES * channels);
   tallies_ = session.allocate<std::int64_t>(3 * TURBID_TALLY_COUNT);
-  ground_ = session.allocate<std::int64_t>(params_.ground ? kGroundTexels * kGroundTexels * channels : 0);
+  const std::size_t texels = static_cast<std::size_t>(params_.ground_size) * params_.ground_size;
+  ground_ = session.allocate<std::int64_t>(texels * channels);
+  ground_rays_ = session.allocate<int>(texels);
   next_count_ = session.allocate<int>(1);
 }
 
@@ -64,6 +69,7 @@ void March::start(const LightRays& light) {
   session_.fill_zero(session_.march_queue(), deposit_);
   session_.fill_zero(session_.march_queue(), tallies_);
   session_.fill_zero(session_.march_queue(), ground_);
+  session_.fill_zero(session_.march_queue(), ground_rays_);
 }
 
 void March::enqueue_batch() {
@@ -73,7 +79,7 @@ void March::enqueue_batch() {
   params_.ray_count = static_cast<int>(ray_count_);
   kernel_.enqueue(queue, {ray_count_}, {64}, medium_.regions_buffer, medium_.tile_map_buffer,
                   medium_.block_region_buffer, medium_.distance_tiles, medium_.index_tiles, medium_.coefficient_tiles,
-                  params_, rays_, next_, next_count_, deposit_, tallies_, ground_);
+                  params_, rays_, next_, next_count_, deposit_, tallies_, ground_, ground_rays_);
   cl::check(clFlush(queue.get()), "starting the march");
 }
 
@@ -120,6 +126,7 @@ GroundLight March::read_ground() {
       ground.irradiance[i][c] = static_cast<float>(channels == 3 ? value : value * medium_.features.tint[c]);
     }
   }
+  smooth_ground_light(&ground, session_.read(session_.march_queue(), ground_rays_));
   return ground;
 }
 

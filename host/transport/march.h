@@ -45,10 +45,10 @@ class March {
   cl::Program program_;
   cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>,
              cl::Buffer<float>, MarchParams, cl::Buffer<RayState>, cl::Buffer<RayState>, cl::Buffer<int>,
-             cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>>
+             cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<int>>
       kernel_;
   cl::Buffer<RayState> rays_, next_;
-  cl::Buffer<int> next_count_;
+  cl::Buffer<int> next_count_, ground_rays_;
   cl::Buffer<std::int64_t> deposit_, tallies_, ground_;
   std::size_t ray_count_ = 0;
   int batches_ = 0;

@@ -10,7 +10,7 @@ typedef struct {
   const global float* ground_map;     // [texel][3]: light that came through the media [W/unit^2]
 } Surroundings;
 
-// Share of the shadow map around a point that the light reaches: bilinear mean over 2x2 texels' tests.
+// Share of the shadow map around a point that the light reaches (Reeves, Salesin and Cook 1987).
 static float visibility(const Surroundings* s, const global LightParams* light, float3 x, float bias) {
   if (light->map_size == 0) return 1.0f;
   const global float* m = light->voxel_to_clip;
@@ -21,17 +21,22 @@ static float visibility(const Surroundings* s, const global LightParams* light, 
   const float size = (float)light->map_size;
   const float column = (0.5f * u + 0.5f) * size - 0.5f, row = (0.5f - 0.5f * v) * size - 0.5f;
   const int c0 = (int)floor(column), r0 = (int)floor(row);
-  if (c0 < 0 || r0 < 0 || c0 + 1 >= light->map_size || r0 + 1 >= light->map_size) return 1.0f;
+  if (c0 < 1 || r0 < 1 || c0 + 2 >= light->map_size || r0 + 2 >= light->map_size) return 1.0f;
   const float3 from = x - vload3(0, light->map_origin);
   const float depth =
       light->kind == TURBID_LIGHT_DIRECTIONAL ? dot(from, vload3(0, light->direction)) : length(from);
   const global float* map = s->shadow_depths + light->map_offset;
-  float lit[4];
-  for (int k = 0; k < 4; ++k) {
-    lit[k] = depth <= map[(r0 + (k >> 1)) * light->map_size + c0 + (k & 1)] + bias ? 1.0f : 0.0f;
-  }
+  // 4 x 4 texels under a 3 x 3 box that slides with the point: edges one texel soft, without steps.
   const float fu = column - c0, fv = row - r0;
-  return mix(mix(lit[0], lit[1], fu), mix(lit[2], lit[3], fu), fv);
+  const float wu[4] = {1.0f - fu, 1.0f, 1.0f, fu}, wv[4] = {1.0f - fv, 1.0f, 1.0f, fv};
+  float lit = 0.0f;
+  for (int j = 0; j < 4; ++j) {
+    for (int i = 0; i < 4; ++i) {
+      const float seen = map[(r0 - 1 + j) * light->map_size + c0 - 1 + i] + bias;
+      lit += depth <= seen ? wu[i] * wv[j] : 0.0f;
+    }
+  }
+  return lit * (1.0f / 9.0f);
 }
 
 // Direct irradiance of a surface with unit normal n [W/unit^2].

@@ -161,6 +161,14 @@ static Step advance(const Medium* medium, Ray* ray, float step_size) {
   return step;
 }
 
+// No reflection between two regions: their blurred indices join, or the indices agree to what sampling can tell (a graded index
+// is interpolated from voxels: its value at a surface is uncertain by about 1e-3, which grazing rays would take for a mirror).
+static bool index_matched(const Medium* medium, int a, int b, float eta_a, float eta_b) {
+  if (medium->regions[a].smooth_group && medium->regions[b].smooth_group) return true;
+  const bool graded = medium->regions[a].index_set >= 0 || medium->regions[b].index_set >= 0;
+  return fabs(eta_a - eta_b) <= (graded ? 3e-3f : 1e-6f);
+}
+
 // Unit normal of a body's surface, outward.
 static float3 surface_normal(const Medium* medium, int body, float3 x) {
   const float3 gradient = surface_at(medium, body, locate(x)).xyz;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // For tests that read scenes: files in a folder of their own, removed afterwards.
 #pragma once
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "host/base/errors.h"
 #include "host/scene/scene.h"
@@ -56,5 +58,41 @@ inline std::string error_of(const std::string& text, const SceneOverrides& overr
   }
   return "no error";
 }
+
+/// A small scene: a ball, a light, a camera.
+inline constexpr char kBall[] = R"(unit = "mm"
+[domain]
+resolution = 32
+[material.jade]
+eta = 1.4
+sigma_s = [1.0, 1.4, 0.9]
+sigma_a = 0.02
+[[object]]
+shape = "sphere"
+radius = 10
+material = "jade"
+[[light]]
+type = "point"
+position = [30, 0, 0]
+power = 1
+[camera]
+position = [0, 0, 60]
+)";
+
+/// The same with one piece of its text replaced.
+inline std::string ball_with(const std::string& old, const std::string& replacement) {
+  std::string text = kBall;
+  text.replace(text.find(old), old.size(), replacement);
+  return text;
+}
+
+inline SceneOverrides with(std::vector<std::string> settings) {
+  SceneOverrides overrides;
+  overrides.settings = std::move(settings);
+  return overrides;
+}
+
+#define EXPECT_BEGINS(text, start) EXPECT_EQ((text).substr(0, std::string(start).size()), start) << (text)
+#define EXPECT_HOLDS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
 }  // namespace turbid::test

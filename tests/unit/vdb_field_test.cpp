@@ -19,7 +19,8 @@ glm::vec3 at(const FieldPtr& field, glm::vec3 x) {
   return value;
 }
 
-/// Value 10 i at voxel (i, j, k) of an 8^3 cube; background 0.5; voxels of 2 units, voxel (0,0,0) centred at (10, 0, 0).
+/// Value 10 i at voxel (i, j, k) of an 8^3 cube; background 0.5; voxels of 2 units, voxel (0,0,0) centred at (10, 0,
+/// 0).
 template <class Grid>
 typename Grid::Ptr ramp(const std::string& name) {
   openvdb::initialize();
@@ -35,7 +36,9 @@ typename Grid::Ptr ramp(const std::string& name) {
   return grid;
 }
 
-void write(const std::string& path, const openvdb::GridCPtrVec& grids) { openvdb::io::File(path).write(grids); }
+void write(const std::string& path, const openvdb::GridCPtrVec& grids) {
+  openvdb::io::File(path).write(grids);
+}
 
 std::string error_of(const std::string& path, const std::string& grid = "") {
   try {
@@ -83,9 +86,11 @@ TEST(VdbField, names_the_grids_there_are) {
   const Folder folder;
   const std::string path = folder.file("a.vdb");
   write(path, {ramp<openvdb::FloatGrid>("density"), ramp<openvdb::Vec3SGrid>("colour")});
-  EXPECT_EQ(error_of(path, "smoke"), path + ": has no grid \"smoke\"; there are \"colour\" (vec3s), \"density\" (float)");
-  EXPECT_EQ(error_of(path), path + ": holds several densities, say which with the key grid; there are \"colour\" (vec3s), "
-                                   "\"density\" (float)");
+  EXPECT_EQ(error_of(path, "smoke"),
+            path + ": has no grid \"smoke\"; there are \"colour\" (vec3s), \"density\" (float)");
+  EXPECT_EQ(error_of(path), path +
+                                ": holds several densities, say which with the key grid; there are \"colour\" (vec3s), "
+                                "\"density\" (float)");
 }
 
 TEST(VdbField, tells_grids_of_one_name_apart) {
@@ -94,8 +99,9 @@ TEST(VdbField, tells_grids_of_one_name_apart) {
   auto second = ramp<openvdb::FloatGrid>("density");
   second->tree().setValue({2, 2, 2}, 99);
   write(path, {ramp<openvdb::FloatGrid>("density"), second});
-  EXPECT_EQ(error_of(path, "density"), path + ": holds several grids \"density\", say which with the key grid; there are "
-                                              "\"density[0]\" (float), \"density[1]\" (float)");
+  EXPECT_EQ(error_of(path, "density"), path +
+                                           ": holds several grids \"density\", say which with the key grid; there are "
+                                           "\"density[0]\" (float), \"density[1]\" (float)");
   EXPECT_FLOAT_EQ(at(vdb_field(path, "density[1]", glm::vec3(1), glm::vec3(0)), {14, 4, 4}).x, 99.0f);
 }
 
@@ -105,7 +111,8 @@ TEST(VdbField, refuses_level_sets) {
   auto grid = ramp<openvdb::FloatGrid>("ls");
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   write(path, {grid});
-  EXPECT_NE(error_of(path, "ls").find("grid \"ls\" is a level set (distances to a surface): expected a density"), std::string::npos);
+  EXPECT_NE(error_of(path, "ls").find("grid \"ls\" is a level set (distances to a surface): expected a density"),
+            std::string::npos);
   EXPECT_NE(error_of(path).find("holds no density"), std::string::npos);
 }
 
@@ -114,7 +121,8 @@ TEST(VdbField, passes_over_a_level_set_if_the_file_has_one_density) {
   auto other = ramp<openvdb::FloatGrid>("ls");
   other->setGridClass(openvdb::GRID_LEVEL_SET);
   write(folder.file("a.vdb"), {other, ramp<openvdb::FloatGrid>("density")});
-  EXPECT_NE(vdb_field(folder.file("a.vdb"), "", glm::vec3(1), glm::vec3(0))->describe().find("\"density\""), std::string::npos);
+  EXPECT_NE(vdb_field(folder.file("a.vdb"), "", glm::vec3(1), glm::vec3(0))->describe().find("\"density\""),
+            std::string::npos);
 }
 
 TEST(VdbField, refuses_points_and_other_types) {
@@ -122,10 +130,12 @@ TEST(VdbField, refuses_points_and_other_types) {
   openvdb::initialize();
   auto transform = openvdb::math::Transform::createLinearTransform(1.0);
   const std::vector<openvdb::Vec3R> positions{{0, 0, 0}, {1, 2, 3}};
-  auto points = openvdb::points::createPointDataGrid<openvdb::points::NullCodec, openvdb::points::PointDataGrid>(positions, *transform);
+  auto points = openvdb::points::createPointDataGrid<openvdb::points::NullCodec, openvdb::points::PointDataGrid>(
+      positions, *transform);
   points->setName("points");
   write(folder.file("p.vdb"), {points});
-  EXPECT_NE(error_of(folder.file("p.vdb"), "points").find("grid \"points\" is points: expected a density"), std::string::npos)
+  EXPECT_NE(error_of(folder.file("p.vdb"), "points").find("grid \"points\" is points: expected a density"),
+            std::string::npos)
       << error_of(folder.file("p.vdb"), "points");
   auto mask = openvdb::BoolGrid::create();
   mask->setName("mask");
@@ -135,7 +145,8 @@ TEST(VdbField, refuses_points_and_other_types) {
 
 TEST(VdbField, refuses_what_is_no_vdb_file) {
   const Folder folder;
-  EXPECT_NE(error_of(folder.write("t.vdb", "version https://git-lfs.github.com/spec/v1\n")).find("can't be read as an OpenVDB file"),
+  EXPECT_NE(error_of(folder.write("t.vdb", "version https://git-lfs.github.com/spec/v1\n"))
+                .find("can't be read as an OpenVDB file"),
             std::string::npos);
   EXPECT_NE(error_of(folder.write("e.vdb", "")).find("can't be read as an OpenVDB file"), std::string::npos);
   EXPECT_NE(error_of(folder.file("none.vdb")).find("no such file"), std::string::npos);

@@ -35,6 +35,7 @@ static void store_ray(global RayState* state, const Ray* ray, Colour power, cons
   state->power[0] = power;
 #endif
   state->floor_power = parent->floor_power;
+  state->texel = parent->texel;
   state->entering = 0;
   state->bounces = bounces;
   state->steps = steps;
@@ -79,9 +80,20 @@ static void light_ground(global long* ground, global int* ground_rays, const Mar
   }
 }
 
+// Light that has left the media, for the view pass: on the ground where it lands, or, where rays stay straight, as the shadow
+// texel's transmittance.
+static void collect(global long* ground, global int* ground_rays, global long* transmitted, const MarchParams* p, int texel,
+                    float3 x, float3 direction, Colour power) {
+  if (!p->straight) {
+    light_ground(ground, ground_rays, p, x, direction, power);
+  } else if (texel >= 0) {
+    add_power(transmitted + TURBID_CHANNELS * texel, power, p->fixed_per_watt);
+  }
+}
+
 kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, global RayState* next,
                   global int* next_count, global long* deposit, global long* tallies, global long* ground,
-                  global int* ground_rays) {
+                  global int* ground_rays, global long* transmitted) {
   const int index = get_global_id(0);
   if (index >= p.ray_count) return;
   const Medium medium = MEDIUM_FROM_ARGUMENTS;
@@ -124,7 +136,7 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
     if (p.ground && region == 0 && from.y > p.ground_height && ray.x.y <= p.ground_height) {
       // The ground cuts through the domain: what reaches it counts as escaped downwards.
       add_power(tallies + 3 * (TURBID_TALLY_ESCAPED + 2), power, p.fixed_per_watt);
-      light_ground(ground, ground_rays, &p, from, normalize(ray.x - from), power);
+      collect(ground, ground_rays, transmitted, &p, state->texel, from, normalize(ray.x - from), power);
       alive = false;
       break;
     }
@@ -158,7 +170,7 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
         ray.region = region_at(&medium, locate(ray.x));
       } else {
         add_power(tallies + 3 * (TURBID_TALLY_ESCAPED + step.face), power, p.fixed_per_watt);
-        light_ground(ground, ground_rays, &p, ray.x, normalize(ray.v), power);
+        collect(ground, ground_rays, transmitted, &p, state->texel, ray.x, normalize(ray.v), power);
         alive = false;
       }
     } else if (step.event == EVENT_SURFACE) {

@@ -74,12 +74,12 @@ static void split(Branch* branch, Branch* stack, int* stacked, float3 normal, fl
 }
 
 kernel void view(MEDIUM_ARGUMENTS, ViewParams p, const global ViewSample* samples, const global float* source_tiles,
-                 const global LightParams* lights, const global float* shadow_depths, const global float* ground_map,
-                 global float* radiance) {
+                 const global LightParams* lights, const global float* shadow_depths, const global float* transmittance,
+                 const global float* ground_map, global float* radiance) {
   const int index = get_global_id(0);
   if (index >= p.sample_count) return;
   const Medium medium = MEDIUM_FROM_ARGUMENTS;
-  const Surroundings around = {lights, shadow_depths, ground_map};
+  const Surroundings around = {lights, shadow_depths, transmittance, ground_map};
   const global ViewSample* sample = samples + index;
   const float3 start = vload3(0, sample->position);
   const float3 direction = vload3(0, sample->direction);

@@ -26,7 +26,7 @@ double step(double edge, double v) {
   return v < edge ? 0.0 : 1.0;
 }
 double smoothstep(double lo, double hi, double v) {
-  if (!(lo < hi)) return step(lo, v);
+  if (lo == hi) return step(lo, v);  // lo > hi falls from 1 to 0
   const double t = clamp((v - lo) / (hi - lo), 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);
 }

@@ -11,7 +11,7 @@ namespace turbid {
 
 /// `text` in x, y, z (scene units), r = |(x,y,z)|, pi and muParser's own functions, plus noise(x,y,z) (gradient noise in
 /// [-1, 1], period-free) and fbm(x,y,z,octaves) (sum of octaves, each half as strong), clamp(v,lo,hi), mix(a,b,t),
-/// step(edge,v), smoothstep(lo,hi,v). Throws InputError with muParser's message and the place in the text.
+/// step(edge,v), smoothstep(lo,hi,v) (falling where lo > hi). Throws InputError with muParser's message and the place in the text.
 /// One text is grey; three are R, G, B.
 FieldPtr expression_field(const std::array<std::string, 3>& texts);
 FieldPtr expression_field(const std::string& text);

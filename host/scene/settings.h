@@ -8,7 +8,7 @@ namespace turbid {
 
 struct MarchSettings {
   float step_in_voxels = 0.5f;      ///< arc length of one step / voxel size [-], in (0, 2]
-  float rays_per_face = 2.0f;       ///< light rays per voxel face where they enter [-], in (0, 64]
+  float rays_per_face = 4.0f;       ///< light rays per voxel face where they enter [-], in (0, 64]
   int max_steps = 4096;             ///< a ray still inside after this many steps is reported as in flight; >= 1
   int batch_steps = 256;            ///< steps k of one batch (Bernabei et al. III-B); >= 1
   int max_bounces = 16;             ///< interfaces that one path may meet; what is left then is reported as in flight

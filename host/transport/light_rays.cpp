@@ -42,6 +42,8 @@ class RayStarter {
     } else {
       from_outside(light);
     }
+    texels_before_ += shadow_.depth.size();
+    result_.texel_power.resize(texels_before_, glm::dvec3(0));
     result_.shadows.push_back(std::move(shadow_));
   }
 
@@ -69,7 +71,8 @@ class RayStarter {
     return {rgb[strongest] / std::max(features.tint[strongest], 1e-30f), 0.0f, 0.0f};
   }
 
-  void push(glm::vec3 position, glm::vec3 direction, glm::vec3 normal, int region, bool entering, glm::dvec3 power) {
+  void push(glm::vec3 position, glm::vec3 direction, glm::vec3 normal, int region, bool entering, glm::dvec3 power,
+            std::ptrdiff_t texel = -1) {
     RayState ray{};
     const glm::vec3 x = glm::clamp((position - frame_.origin) / frame_.voxel_size, glm::vec3(0), glm::vec3(frame_.voxels));
     for (int i = 0; i < 3; ++i) {
@@ -81,6 +84,7 @@ class RayStarter {
     ray.region = region;
     ray.entering = entering;
     ray.grace = 1.5f;
+    ray.texel = static_cast<int>(texel);
     ray.floor_power = march_.min_power * std::max({ray.power[0], ray.power[1], ray.power[2]});
     if (ray.floor_power == 0.0f && std::max({ray.power[0], ray.power[1], ray.power[2]}) == 0.0f) return;
     carried_ += glm::dvec3(ray.power[0], ray.power[1], ray.power[2]);
@@ -88,7 +92,7 @@ class RayStarter {
   }
 
   /// A ray that meets the rasterised surface at pixel `i`.
-  void launch(const RasterImage& image, std::size_t i, glm::vec3 direction, glm::dvec3 power) {
+  void launch(const RasterImage& image, std::size_t i, glm::vec3 direction, glm::dvec3 power, bool has_map = true) {
     const int region = image.id[i];
     if (region < 0 || !image.front[i]) return;
     const glm::vec3 hit = image.position[i];
@@ -104,7 +108,12 @@ class RayStarter {
       push(inside_domain(hit, direction, back), direction, -direction, 0, false, power);
       return;
     }
-    push(hit, direction, image.normal[i], region, region > 0, power);
+    const std::ptrdiff_t texel = has_map ? static_cast<std::ptrdiff_t>(texels_before_ + i) : -1;
+    if (has_map) {
+      result_.texel_power.resize(std::max(result_.texel_power.size(), static_cast<std::size_t>(texel) + 1), glm::dvec3(0));
+      result_.texel_power[texel] = power;
+    }
+    push(hit, direction, image.normal[i], region, region > 0, power, texel);
   }
 
   /// hit - back * direction, or where the ray enters the domain if that lies outside.
@@ -184,7 +193,7 @@ class RayStarter {
         const glm::vec3 direction = glm::normalize(image.position[i] - light.position);
         if (!in_cone(light, direction)) continue;
         const double cosine = -(glm::transpose(glm::mat3(eye_to_world)) * direction).z;
-        launch(image, i, direction, intensity * (texel * texel * cosine * cosine * cosine));
+        launch(image, i, direction, intensity * (texel * texel * cosine * cosine * cosine), keep);
       }
     }
     if (keep) keep_shadow(image, view, light.position, axis, false);
@@ -241,6 +250,7 @@ class RayStarter {
   std::uint64_t seed_;
   glm::vec3 centre_{0};
   float radius_ = 1, texel_ = 1;
+  std::size_t texels_before_ = 0;   // of earlier lights' shadow maps
   LightRays result_;
   ShadowMap shadow_;
   glm::dvec3 carried_{0};

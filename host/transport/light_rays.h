@@ -15,6 +15,7 @@ namespace turbid {
 struct LightRays {
   std::vector<RayState> rays;        ///< powers [W] in the channels of the scene's features
   std::vector<ShadowMap> shadows;    ///< one per light
+  std::vector<glm::dvec3> texel_power;  ///< power that starts at each texel of all shadow maps, in their order [W]
   glm::dvec3 emitted{0};             ///< aimed at the medium or its surroundings [W], per channel
   glm::dvec3 missed{0};              ///< of it, not carried by any ray
   glm::dvec3 absorbed_opaque{0};     ///< of it, met an opaque surface first

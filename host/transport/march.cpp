@@ -30,6 +30,7 @@ March::March(cl::Session& session, const DeviceMedium& medium, const MarchSettin
   params_.max_steps = settings.max_steps;
   params_.max_bounces = settings.max_bounces;
   for (int face = 0; face < 6; ++face) params_.faces[face] = static_cast<int>(faces[face]);
+  params_.straight = !medium.features.interfaces && !medium.features.graded_index;
   if (surroundings.ground) {
     const GridFrame& frame = medium.frame;
     const float extent = kGroundReach * std::max({frame.size().x, frame.size().y, frame.size().z}) / frame.voxel_size;
@@ -70,6 +71,9 @@ void March::start(const LightRays& light) {
   session_.fill_zero(session_.march_queue(), tallies_);
   session_.fill_zero(session_.march_queue(), ground_);
   session_.fill_zero(session_.march_queue(), ground_rays_);
+  const std::size_t texels = params_.straight ? light.texel_power.size() * medium_.features.channels : 0;
+  if (transmitted_.count() != texels || texels == 0) transmitted_ = session_.allocate<std::int64_t>(texels);
+  session_.fill_zero(session_.march_queue(), transmitted_);
 }
 
 void March::enqueue_batch() {
@@ -79,7 +83,7 @@ void March::enqueue_batch() {
   params_.ray_count = static_cast<int>(ray_count_);
   kernel_.enqueue(queue, {ray_count_}, {64}, medium_.regions_buffer, medium_.tile_map_buffer,
                   medium_.block_region_buffer, medium_.distance_tiles, medium_.index_tiles, medium_.coefficient_tiles,
-                  params_, rays_, next_, next_count_, deposit_, tallies_, ground_, ground_rays_);
+                  params_, rays_, next_, next_count_, deposit_, tallies_, ground_, ground_rays_, transmitted_);
   cl::check(clFlush(queue.get()), "starting the march");
 }
 
@@ -107,9 +111,28 @@ MarchTallies March::read_tallies() {
   return result;
 }
 
+void March::read_transmittance(const LightRays& light, std::vector<ShadowMap>* shadows) {
+  if (!params_.straight) return;
+  const std::vector<std::int64_t> sums = session_.read(session_.march_queue(), transmitted_);
+  const int channels = medium_.features.channels;
+  std::size_t texel = 0;
+  for (ShadowMap& shadow : *shadows) {
+    shadow.transmittance.assign(shadow.depth.size(), glm::vec3(0));
+    for (glm::vec3& share : shadow.transmittance) {
+      const glm::dvec3& started = light.texel_power[texel];
+      for (int c = 0; c < 3; ++c) {
+        const int source = channels == 3 ? c : 0;
+        if (started[source] <= 0) continue;
+        share[c] = static_cast<float>(watts_per_unit() * static_cast<double>(sums[texel * channels + source]) / started[source]);
+      }
+      ++texel;
+    }
+  }
+}
+
 GroundLight March::read_ground() {
   GroundLight ground;
-  if (!params_.ground) return ground;
+  if (!params_.ground || params_.straight) return ground;
   const GridFrame& frame = medium_.frame;
   const std::vector<std::int64_t> sums = session_.read(session_.march_queue(), ground_);
   ground.size = params_.ground_size;

@@ -34,6 +34,8 @@ class March {
   double watts_per_unit() const { return 1.0 / fixed_per_watt_; }
   MarchTallies read_tallies();
   GroundLight read_ground();
+  /// Where nothing refracts: fills the shadow maps' transmittance. `light` is what was started.
+  void read_transmittance(const LightRays& light, std::vector<ShadowMap>* shadows);
 
  private:
   void reserve(std::size_t rays);
@@ -45,11 +47,11 @@ class March {
   cl::Program program_;
   cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>,
              cl::Buffer<float>, MarchParams, cl::Buffer<RayState>, cl::Buffer<RayState>, cl::Buffer<int>,
-             cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<int>>
+             cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<int>, cl::Buffer<std::int64_t>>
       kernel_;
   cl::Buffer<RayState> rays_, next_;
   cl::Buffer<int> next_count_, ground_rays_;
-  cl::Buffer<std::int64_t> deposit_, tallies_, ground_;
+  cl::Buffer<std::int64_t> deposit_, tallies_, ground_, transmitted_;
   std::size_t ray_count_ = 0;
   int batches_ = 0;
   double fixed_per_watt_ = 1;

@@ -73,6 +73,7 @@ LightSolution MarchingSolver::light(const LightList& lights) {
   const MarchTallies tallies = march_->read_tallies();
   LightSolution solution{.volume = {diffusion.frame, diffusion.blocks, {}, {}}, .ground = march_->read_ground(),
                          .shadows = rays.shadows, .report = {}};
+  march_->read_transmittance(rays, &solution.shadows);
   SolverReport& report = solution.report;
   report.solver = name();
   report.channels = channels;

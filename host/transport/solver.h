@@ -44,6 +44,8 @@ struct ShadowMap {
   int size = 0;
   std::vector<float> depth;      ///< distance from the light (point, spot) or along its direction from `origin` [scene units]
   glm::vec3 origin{0};           ///< where depths are counted from
+  std::vector<glm::vec3> transmittance;  ///< share of the light that passes the media behind each texel; empty: none does,
+                                         ///< it is on the ground's map instead
 };
 
 struct SolverReport {

@@ -238,15 +238,21 @@ ViewImage render_view(cl::Session& session, const ViewInput& in, Progress& progr
   const cl::Program program = session.build("view.cl", medium.defines());
   cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>,
              cl::Buffer<float>, ViewParams, cl::Buffer<ViewSample>, cl::Buffer<float>, cl::Buffer<LightParams>,
-             cl::Buffer<float>, cl::Buffer<float>, cl::Buffer<float>>
+             cl::Buffer<float>, cl::Buffer<float>, cl::Buffer<float>, cl::Buffer<float>>
       kernel(program, "view");
 
   ViewParams params = make_params(in, space);
   std::vector<float> depths, ground;
   const std::vector<LightParams> lights = make_lights(in, space, &depths);
   for (const glm::vec3& texel : in.solution.ground.irradiance) ground.insert(ground.end(), {texel.r, texel.g, texel.b});
+  std::vector<float> transmittance;
+  for (const ShadowMap& shadow : in.solution.shadows) {
+    for (const glm::vec3& share : shadow.transmittance) transmittance.insert(transmittance.end(), {share.r, share.g, share.b});
+  }
+  params.transmittance = !transmittance.empty();
   const cl::Buffer<LightParams> light_buffer = session.upload(lights);
   const cl::Buffer<float> depth_buffer = session.upload(depths), ground_buffer = session.upload(ground);
+  const cl::Buffer<float> transmittance_buffer = session.upload(transmittance);
   const cl::Buffer<float> tiles = session.upload(
       in.features.scattering ? make_source_tiles(in.solution.volume, in.medium, medium) : std::vector<float>{});
 
@@ -272,7 +278,7 @@ ViewImage render_view(cl::Session& session, const ViewInput& in, Progress& progr
     params.sample_count = static_cast<int>(strip.samples.size());
     kernel.enqueue(queue, {strip.samples.size()}, {16}, medium.regions_buffer, medium.tile_map_buffer,
                    medium.block_region_buffer, medium.distance_tiles, medium.index_tiles, medium.coefficient_tiles,
-                   params, samples, tiles, light_buffer, depth_buffer, ground_buffer, radiance);
+                   params, samples, tiles, light_buffer, depth_buffer, transmittance_buffer, ground_buffer, radiance);
     std::vector<float> values(8 * strip.samples.size());
     session.read(queue, radiance, std::span<float>(values));
     resolve(strip, values, row, end, maker.grid(), &image);

@@ -7,21 +7,22 @@
 typedef struct {
   const global LightParams* lights;
   const global float* shadow_depths;  // all maps, row 0 = top
+  const global float* transmittance;  // [texel][3]: what passes the media in shadow
   const global float* ground_map;     // [texel][3]: light that came through the media [W/unit^2]
 } Surroundings;
 
 // Share of the shadow map around a point that the light reaches (Reeves, Salesin and Cook 1987).
-static float visibility(const Surroundings* s, const global LightParams* light, float3 x, float bias) {
-  if (light->map_size == 0) return 1.0f;
+static float3 visibility(const Surroundings* s, const ViewParams* p, const global LightParams* light, float3 x, float bias) {
+  if (light->map_size == 0) return (float3)(1.0f);
   const global float* m = light->voxel_to_clip;
   const float w = m[3] * x.x + m[7] * x.y + m[11] * x.z + m[15];
-  if (w <= 0.0f) return 1.0f;
+  if (w <= 0.0f) return (float3)(1.0f);
   const float u = (m[0] * x.x + m[4] * x.y + m[8] * x.z + m[12]) / w;
   const float v = (m[1] * x.x + m[5] * x.y + m[9] * x.z + m[13]) / w;
   const float size = (float)light->map_size;
   const float column = (0.5f * u + 0.5f) * size - 0.5f, row = (0.5f - 0.5f * v) * size - 0.5f;
   const int c0 = (int)floor(column), r0 = (int)floor(row);
-  if (c0 < 1 || r0 < 1 || c0 + 2 >= light->map_size || r0 + 2 >= light->map_size) return 1.0f;
+  if (c0 < 1 || r0 < 1 || c0 + 2 >= light->map_size || r0 + 2 >= light->map_size) return (float3)(1.0f);
   const float3 from = x - vload3(0, light->map_origin);
   const float depth =
       light->kind == TURBID_LIGHT_DIRECTIONAL ? dot(from, vload3(0, light->direction)) : length(from);
@@ -29,11 +30,16 @@ static float visibility(const Surroundings* s, const global LightParams* light, 
   // 4 x 4 texels under a 3 x 3 box that slides with the point: edges one texel soft, without steps.
   const float fu = column - c0, fv = row - r0;
   const float wu[4] = {1.0f - fu, 1.0f, 1.0f, fu}, wv[4] = {1.0f - fv, 1.0f, 1.0f, fv};
-  float lit = 0.0f;
+  float3 lit = (float3)(0.0f);
   for (int j = 0; j < 4; ++j) {
     for (int i = 0; i < 4; ++i) {
-      const float seen = map[(r0 - 1 + j) * light->map_size + c0 - 1 + i] + bias;
-      lit += depth <= seen ? wu[i] * wv[j] : 0.0f;
+      const int texel = (r0 - 1 + j) * light->map_size + c0 - 1 + i;
+      const float weight = wu[i] * wv[j];
+      if (depth <= map[texel] + bias) {
+        lit += weight;
+      } else if (p->transmittance) {
+        lit += weight * vload3(light->map_offset + texel, s->transmittance);
+      }
     }
   }
   return lit * (1.0f / 9.0f);
@@ -55,7 +61,7 @@ static float3 direct_irradiance(const Surroundings* s, const ViewParams* p, floa
     }
     const float cosine = -dot(from, n);
     if (cosine <= 0.0f) continue;
-    sum += vload3(0, light->intensity) * (cosine * fall_off * visibility(s, light, x, bias));
+    sum += vload3(0, light->intensity) * (cosine * fall_off) * visibility(s, p, light, x, bias);
   }
   return sum;
 }
@@ -72,10 +78,13 @@ static float3 light_through_media(const Surroundings* s, const ViewParams* p, fl
   return mix(low, high, fv);
 }
 
-// Distance along the unit direction to the ground, or a huge number.
+// Distance along the unit direction to the ground, or a huge number. A downward path that stands on the ground, as on a
+// domain face that coincides with it, has reached it.
 static float distance_to_ground(const ViewParams* p, float3 x, float3 direction) {
   if (!p->ground || fabs(direction.y) < 1e-6f) return 1e30f;
-  const float t = (p->ground_height - x.y) / direction.y;
+  const float height = x.y - p->ground_height;
+  if (direction.y < 0.0f && fabs(height) < 1e-2f) return 0.0f;
+  const float t = -height / direction.y;
   return t > 1e-3f ? t : 1e30f;
 }
 

@@ -16,7 +16,8 @@ typedef struct {
   int entering;       // 1: the ray has still to pass the surface of `region` from the ambient
   int bounces;        // interfaces met so far
   int steps;          // steps done so far
-  int padding[2];
+  int texel;          // of the light's shadow map, counted through all maps; -1: none
+  int padding;
 } RayState;
 TURBID_ASSERT_SIZE(RayState, 80);
 
@@ -37,12 +38,13 @@ typedef struct {
   int ray_count;
   float fixed_per_watt;   // fixed-point units per watt
   int faces[6];           // TURBID_FACE_...
+  int straight;           // 1: nothing refracts; what passes the medium is collected per shadow-map texel instead
   int ground;             // 1: light that leaves the domain downwards is collected on the ground
   float ground_height;    // [voxels]
   float ground_origin[2]; // lower corner of the collecting map (x, z) [voxels]
   float ground_texel;     // edge of its texels [voxels]
   int ground_size;        // texels per side
 } MarchParams;
-TURBID_ASSERT_SIZE(MarchParams, 72);
+TURBID_ASSERT_SIZE(MarchParams, 76);
 
 #endif

@@ -26,7 +26,7 @@ typedef struct {
   float cos_half_angle;   // spot
   float intensity[3];     // point, spot: irradiance at a distance of one voxel; directional: irradiance [W/unit^2]
   int map_size;           // shadow map, 0: none
-  int map_offset;         // of its first depth in the array of all
+  int map_offset;         // of its first texel in the arrays of all
   float map_origin[3];    // depths are counted from here [voxels]
   float voxel_to_clip[16];  // column-major
 } LightParams;
@@ -38,6 +38,7 @@ typedef struct {
   int max_branches;
   float min_weight;
   int sample_count;
+  int transmittance;      // 1: shadow maps know what passes the media
   int light_count;
   int ground;             // 1: there is a ground plane
   float ground_height;    // [voxels]
@@ -51,6 +52,6 @@ typedef struct {
   float origin[3];        // scene position of the domain's corner, in voxels, so that checkerboards stay put
   float tint[3];          // colour of the one channel of a grey scene
 } ViewParams;
-TURBID_ASSERT_SIZE(ViewParams, 112);
+TURBID_ASSERT_SIZE(ViewParams, 116);
 
 #endif

@@ -201,7 +201,7 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
       refracted.v = eta_to * surface.refracted;
       refracted.x = step.beyond;
       refracted.region = next_region;
-      reflected.grace = refracted.grace = 0.0f;
+      reflected.grace = refracted.grace = GRACE;
       // The stronger branch goes on here, the weaker one is stored as a ray of its own.
       const bool keep_reflected = surface.reflectance > 0.5f;
       const Colour reflected_power = surface.reflectance * power;

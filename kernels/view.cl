@@ -162,7 +162,7 @@ kernel void view(MEDIUM_ARGUMENTS, ViewParams p, const global ViewSample* sample
         }
         if (++met > 8 * p.max_branches) break;
         const float3 normal = surface_normal(&medium, step.surface, step.beyond);
-        split(&branch, stack, &stacked, normal, eta_from, eta_to, next_region, step.beyond, 0.0f, p.min_weight,
+        split(&branch, stack, &stacked, normal, eta_from, eta_to, next_region, step.beyond, GRACE, p.min_weight,
               met <= p.max_branches ? STACK : 0);
         if (colour_max(branch.weight) < p.min_weight) break;
       }

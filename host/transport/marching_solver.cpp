@@ -33,7 +33,7 @@ void MarchingSolver::prepare(const MediumVolume& medium) {
   medium_ = &medium;
   march_.reset();
   context_.progress.stage("upload");
-  device_.emplace(upload_medium(context_.session, medium, context_.features));
+  device_ = std::make_shared<const DeviceMedium>(upload_medium(context_.session, medium, context_.features));
   surfaces_.emplace(entry_surfaces(context_.description, medium));
   context_.progress.stage("prepare");
   diffusion_.emplace(make_diffusion_medium(medium, context_.features.channels));
@@ -71,7 +71,7 @@ LightSolution MarchingSolver::light(const LightList& lights) {
   }
 
   const MarchTallies tallies = march_->read_tallies();
-  LightSolution solution{.volume = {diffusion.frame, diffusion.blocks, {}, {}}, .ground = march_->read_ground(),
+  LightSolution solution{.device = device_, .volume = {diffusion.frame, diffusion.blocks, {}, {}}, .ground = march_->read_ground(),
                          .shadows = rays.shadows, .report = {}};
   march_->read_transmittance(rays, &solution.shadows);
   SolverReport& report = solution.report;

@@ -45,7 +45,7 @@ class MarchingSolver : public TransportSolver {
 
  private:
   const MediumVolume* medium_ = nullptr;
-  std::optional<DeviceMedium> device_;
+  std::shared_ptr<const DeviceMedium> device_;
   std::optional<DiffusionMedium> diffusion_;
   std::optional<EntrySurfaces> surfaces_;
   std::optional<March> march_;

@@ -59,8 +59,11 @@ struct SolverReport {
   EnergyBalance energy;
 };
 
+struct DeviceMedium;
+
 /// A solver's answer.
 struct LightSolution {
+  std::shared_ptr<const DeviceMedium> device;  ///< the medium's tiles on the device, which the view pass reads too
   FluenceVolume volume;
   GroundLight ground;
   std::vector<ShadowMap> shadows;   ///< one per light; size 0: casts none

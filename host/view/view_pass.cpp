@@ -234,7 +234,7 @@ ViewImage render_view(cl::Session& session, const ViewInput& in, Progress& progr
   progress.stage("view");
   const VoxelSpace space{in.medium.frame()};
   const EntrySurfaces surfaces = entry_surfaces(in.description, in.medium);
-  const DeviceMedium medium = upload_medium(session, in.medium, in.features);
+  const DeviceMedium& medium = *in.solution.device;
   const cl::Program program = session.build("view.cl", medium.defines());
   cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>,
              cl::Buffer<float>, ViewParams, cl::Buffer<ViewSample>, cl::Buffer<float>, cl::Buffer<LightParams>,

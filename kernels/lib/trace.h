@@ -16,6 +16,10 @@ typedef struct {
   float grace;   // see RayState
 } Ray;
 
+// Arc length [voxels] after an interface in which the sampled surface is not looked at again: a grazing ray stays within the
+// sampling's ripples for a while and would meet the same surface many times over.
+#define GRACE 0.5f
+
 #define EVENT_NONE 0      // the whole step was done
 #define EVENT_SURFACE 1   // the ray stands just before another region's surface
 #define EVENT_FACE 2      // the ray stands on a face of the domain

@@ -117,6 +117,32 @@ static Row fluence_of(const Block* block, int row, Row phi_before, Row phi_after
 #endif
 }
 
+// What a block sends its neighbours: the mean over the inner steps of what left through each face. With the last step's instead
+// (as in the paper) the exchange can amplify: two-relaxation-time modes of thin voxels alternate in sign from step to step and a
+// frozen interface resonates with them. The mean can't: a step conserves or loses energy, sum_t |out_t|^2 + |x_m|^2 <= m |in|^2 +
+// |x_0|^2, and |mean out|^2 <= sum_t |out_t|^2 / m, so |x|^2 + m |interfaces|^2 never grows. The steady state is the same.
+typedef struct {
+  float x[2][ROWS];
+  Row y[2][EDGE], z[2][EDGE];
+} Sent;
+
+static void add_outgoing(Sent* sent, const Row (*state)[ROWS]) {
+  for (int row = 0; row < ROWS; ++row) {
+#if EDGE == 8
+    sent->x[0][row] += state[0][row].s7;
+#else
+    sent->x[0][row] += state[0][row].s3;
+#endif
+    sent->x[1][row] += state[1][row].s0;
+  }
+  for (int k = 0; k < EDGE; ++k) {
+    sent->y[0][k] += state[2][EDGE - 1 + EDGE * k];
+    sent->y[1][k] += state[3][EDGE * k];
+    sent->z[0][k] += state[4][k + EDGE * (EDGE - 1)];
+    sent->z[1][k] += state[5][k];
+  }
+}
+
 // `inner` steps in every block. sums[channel][block][2]: summed |change| of the fluence since the last sweep, and its sum.
 kernel void sweep(const global float* collision, const global float* source, const global int* link_block,
                   const global float* links, const global int* neighbours, const global float* interfaces_in,
@@ -133,6 +159,9 @@ kernel void sweep(const global float* collision, const global float* source, con
   for (int i = 0; i < 6; ++i) {
     for (int row = 0; row < ROWS; ++row) even_steps[i][row] = LOAD_ROW(row, stored + i * VOXELS);
   }
+  Sent sent;
+  for (int row = 0; row < ROWS; ++row) sent.x[0][row] = sent.x[1][row] = 0.0f;
+  for (int k = 0; k < EDGE; ++k) sent.y[0][k] = sent.y[1][k] = sent.z[0][k] = sent.z[1][k] = (Row)(0.0f);
   float change = 0.0f, total = 0.0f;
   for (int step = 0; step < inner; ++step) {
     Row(*from)[ROWS] = (step & 1) ? odd_steps : even_steps;
@@ -149,20 +178,21 @@ kernel void sweep(const global float* collision, const global float* source, con
         STORE_ROW(value, row, psi);
       }
     }
+    add_outgoing(&sent, (const Row(*)[ROWS])to);
   }
   Row(*result)[ROWS] = (inner & 1) ? odd_steps : even_steps;
-  global float* sent = interfaces_out + ((size_t)channel * (blocks + 1) + block_index) * 6 * ROWS;
+  global float* faces = interfaces_out + ((size_t)channel * (blocks + 1) + block_index) * 6 * ROWS;
+  const float mean = 1.0f / (float)inner;
   for (int row = 0; row < ROWS; ++row) {
     for (int i = 0; i < 6; ++i) STORE_ROW(result[i][row], row, stored + i * VOXELS);
-    // Row index doubles as (y, z) of the x faces.
-    sent[0 * ROWS + row] = stored[0 * VOXELS + EDGE * row + EDGE - 1];
-    sent[1 * ROWS + row] = stored[1 * VOXELS + EDGE * row];
+    faces[0 * ROWS + row] = mean * sent.x[0][row];
+    faces[1 * ROWS + row] = mean * sent.x[1][row];
   }
   for (int k = 0; k < EDGE; ++k) {
-    STORE_ROW(result[2][EDGE - 1 + EDGE * k], k, sent + 2 * ROWS);
-    STORE_ROW(result[3][EDGE * k], k, sent + 3 * ROWS);
-    STORE_ROW(result[4][k + EDGE * (EDGE - 1)], k, sent + 4 * ROWS);
-    STORE_ROW(result[5][k], k, sent + 5 * ROWS);
+    STORE_ROW(mean * sent.y[0][k], k, faces + 2 * ROWS);
+    STORE_ROW(mean * sent.y[1][k], k, faces + 3 * ROWS);
+    STORE_ROW(mean * sent.z[0][k], k, faces + 4 * ROWS);
+    STORE_ROW(mean * sent.z[1][k], k, faces + 5 * ROWS);
   }
   sums[2 * index] = change;
   sums[2 * index + 1] = total;

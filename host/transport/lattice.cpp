@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include "host/base/errors.h"
 
 namespace turbid {
 namespace {
@@ -58,13 +61,13 @@ void Lattice::set_source(const std::vector<float>& q) {
   session_.write(session_.lattice_queue(), source_, std::span<const float>(scaled));
 }
 
-void Lattice::enqueue_sweeps(int count) {
+void Lattice::enqueue_sweeps(int count, int inner) {
   cl::Queue& queue = session_.lattice_queue();
   const cl::Range global{static_cast<std::size_t>(blocks_), static_cast<std::size_t>(channels_)}, local{1, 1};
   for (int i = 0; i < count; ++i, ++sweeps_) {
     sweep_.enqueue(queue, global, local, collision_, source_, link_block_, links_, neighbours_, interfaces_[sweeps_ & 1],
                    interfaces_[(sweeps_ + 1) & 1], populations_, fluence_, sums_, blocks_, medium_.link_blocks, channels_,
-                   settings_.inner_iterations);
+                   inner);
   }
   cl::check(clFlush(queue.get()), "starting the lattice");
 }
@@ -83,13 +86,24 @@ Lattice::Change Lattice::read_change() {
   return result;
 }
 
+double Lattice::largest_s() const {
+  return diffusion_.s.empty() ? 0.0 : *std::max_element(diffusion_.s.begin(), diffusion_.s.end());
+}
+
 double Lattice::relax(const std::function<void(double)>& progress) {
   double previous = 0, estimate = 1;
   int small = 0;
   while (sweeps_ < settings_.max_sweeps && blocks_ > 0) {
     enqueue_sweeps(kSweepsPerTest);
     const double change = read_change().relative;
-    if (change == 0.0) return 0.0;
+    if (change == 0.0) {
+      estimate = 0.0;
+      break;
+    }
+    if (!std::isfinite(change) || change > 1e6) {
+      throw InputError("lattice: the collision diverges: optical thickness per voxel up to " + std::to_string(largest_s()) +
+                       ", stable to 2 with collision = \"paper\"; raise the resolution or use collision = \"trt\"");
+    }
     // rho per sweep from changes that lie kSweepsPerTest sweeps apart.
     const double rho = previous > 0 ? std::min(std::pow(change / previous, 1.0 / kSweepsPerTest), 0.999999) : 0.999999;
     previous = change;
@@ -99,6 +113,8 @@ double Lattice::relax(const std::function<void(double)>& progress) {
     small = estimate < settings_.tolerance ? small + 1 : 0;
     if (small == 2) break;
   }
+  // One plain step, after which interfaces and populations belong together and the energy of a step can be told exactly.
+  enqueue_sweeps(1, 1);
   return estimate;
 }
 

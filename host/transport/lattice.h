@@ -25,7 +25,7 @@ class Lattice {
   /// Replaces the source by q [W]: [channel][block][voxel] of the diffusion medium; populations stay.
   void set_source(const std::vector<float>& q);
   /// Enqueues `count` sweeps on the lattice queue and returns at once.
-  void enqueue_sweeps(int count);
+  void enqueue_sweeps(int count) { enqueue_sweeps(count, settings_.inner_iterations); }
   int sweeps() const { return sweeps_; }
 
   struct Change {
@@ -42,6 +42,9 @@ class Lattice {
   double relax(const std::function<void(double)>& progress = {});
 
  private:
+  void enqueue_sweeps(int count, int inner);
+  double largest_s() const;
+
   using F = cl::Buffer<float>;
   using I = cl::Buffer<std::int32_t>;
 

@@ -7,8 +7,8 @@
 namespace turbid {
 namespace {
 
-/// The domain's open faces as two triangles each, outward.
-TriangleMesh domain_faces(const GridFrame& frame, const std::array<FaceBoundary, 6>& faces) {
+/// The domain's faces, or the open ones, as two triangles each, outward.
+TriangleMesh domain_faces(const GridFrame& frame, const std::array<FaceBoundary, 6>& faces, bool all) {
   TriangleMesh mesh;
   mesh.name = "domain";
   const glm::vec3 low = frame.origin, high = frame.upper();
@@ -17,7 +17,7 @@ TriangleMesh domain_faces(const GridFrame& frame, const std::array<FaceBoundary,
   }
   static constexpr unsigned kCorners[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
   for (int face = 0; face < 6; ++face) {
-    if (faces[face] != FaceBoundary::open) continue;
+    if (!all && faces[face] != FaceBoundary::open) continue;
     const unsigned* c = kCorners[face];
     glm::vec3 normal(0);
     normal[face / 2] = face % 2 ? 1.0f : -1.0f;
@@ -30,14 +30,14 @@ TriangleMesh domain_faces(const GridFrame& frame, const std::array<FaceBoundary,
 
 }  // namespace
 
-EntrySurfaces entry_surfaces(const MediumDescription& description, const MediumVolume& medium) {
+EntrySurfaces entry_surfaces(const MediumDescription& description, const MediumVolume& medium, bool all_faces) {
   EntrySurfaces surfaces;
   const Region& ambient = medium.region(0);
   surfaces.ambient = ambient.scatters || ambient.absorbs || ambient.emits ||
                      (ambient.graded_index && !ambient.smooth_surface);
   const GridFrame& frame = medium.frame();
   if (surfaces.ambient) {
-    surfaces.own.push_back(domain_faces(frame, medium.faces()));
+    surfaces.own.push_back(domain_faces(frame, medium.faces(), all_faces));
     surfaces.bounds = {frame.origin, frame.upper()};
     if (!surfaces.own.back().triangles.empty()) surfaces.meshes.push_back({&surfaces.own.back(), 0});
     return surfaces;

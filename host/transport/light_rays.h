@@ -28,7 +28,8 @@ struct EntrySurfaces {
   Box3 bounds;                       ///< of what is rasterised, within the domain
   bool ambient = false;              ///< the domain's faces are the surface
 };
-EntrySurfaces entry_surfaces(const MediumDescription&, const MediumVolume&);
+/// Light comes in through open faces only; a camera looks through all of them (`all_faces`).
+EntrySurfaces entry_surfaces(const MediumDescription&, const MediumVolume&, bool all_faces);
 
 LightRays start_rays(const LightList&, const MediumVolume&, const EntrySurfaces&, const DeviceMedium&,
                      const MarchSettings&, std::uint64_t seed);

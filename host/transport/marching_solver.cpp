@@ -34,7 +34,7 @@ void MarchingSolver::prepare(const MediumVolume& medium) {
   march_.reset();
   context_.progress.stage("upload");
   device_ = std::make_shared<const DeviceMedium>(upload_medium(context_.session, medium, context_.features));
-  surfaces_.emplace(entry_surfaces(context_.description, medium));
+  surfaces_.emplace(entry_surfaces(context_.description, medium, false));
   context_.progress.stage("prepare");
   diffusion_.emplace(make_diffusion_medium(medium, context_.features.channels));
   march_.emplace(context_.session, *device_, context_.settings.march, medium.faces(), context_.surroundings);

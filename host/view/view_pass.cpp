@@ -233,7 +233,7 @@ void resolve(const Strip& strip, const std::vector<float>& radiance, int first_r
 ViewImage render_view(cl::Session& session, const ViewInput& in, Progress& progress) {
   progress.stage("view");
   const VoxelSpace space{in.medium.frame()};
-  const EntrySurfaces surfaces = entry_surfaces(in.description, in.medium);
+  const EntrySurfaces surfaces = entry_surfaces(in.description, in.medium, true);
   const DeviceMedium& medium = *in.solution.device;
   const cl::Program program = session.build("view.cl", medium.defines());
   cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>,

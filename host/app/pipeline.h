@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stages that commands share, in order: read, voxelise, survey; then the solver's own.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "host/app/options.h"
+#include "host/base/progress.h"
+#include "host/report/medium_survey.h"
+#include "host/scene/features.h"
+#include "host/scene/scene.h"
+#include "host/transport/solver.h"
+#include "volumes/medium_volume.h"
+
+namespace turbid::app {
+
+/// Largest relative energy imbalance that a run may have [-].
+inline constexpr double kAllowedImbalance = 1e-4;
+
+/// A scene on its grid.
+struct VoxelisedScene {
+  Scene scene;
+  MediumVolume medium;
+  SceneFeatures features;
+  MediumSurvey survey;
+  std::vector<std::string> warnings;  ///< of reading and of the survey
+};
+
+VoxelisedScene read_and_voxelise(const SceneOptions&, Progress&);
+
+LightSolution solve_light(cl::Session&, const VoxelisedScene&, Progress&);
+
+/// Throws VerificationError if the run lost or made energy.
+void require_balance(const EnergyBalance&);
+
+}  // namespace turbid::app

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// report.json.
+#include <sys/resource.h>
+
+#include "host/report/json_parts.h"
+#include "host/report/run_report.h"
+
+namespace turbid {
+namespace {
+
+const char* const kFaces[6] = {"-x", "+x", "-y", "+y", "-z", "+z"};
+
+Json energy_part(const EnergyBalance& e, double allowed) {
+  Json faces;
+  for (std::size_t face = 0; face < 6; ++face) faces[kFaces[face]] = colours(e.escaped_faces[face]);
+  return {{"unit", "W"},
+          {"emitted", colours(e.emitted)},
+          {"missed", colours(e.missed)},
+          {"reflected_at_entry", colours(e.reflected)},
+          {"absorbed", colours(e.absorbed)},
+          {"absorbed_by_opaque", colours(e.absorbed_opaque)},
+          {"escaped", colours(e.escaped)},
+          {"escaped_faces", faces},
+          {"in_flight", colours(e.in_flight)},
+          {"imbalance", e.imbalance()},
+          {"allowed_imbalance", allowed},
+          {"balanced", e.imbalance() <= allowed}};
+}
+
+Json seconds_part(const std::vector<StageTime>& times) {
+  Json part = Json::object();
+  double total = 0;
+  for (const StageTime& stage : times) {
+    part[stage.name] = part.value(stage.name, 0.0) + stage.seconds;
+    total += stage.seconds;
+  }
+  part["total"] = total;
+  return part;
+}
+
+Json named(const NamedTexts& texts) {
+  Json part = Json::object();
+  for (const auto& [name, text] : texts) part[name] = text;
+  return part;
+}
+
+std::uint64_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
+}
+
+}  // namespace
+
+std::string report_json(const RunReport& r) {
+  const SolverReport& s = r.solver;
+  Json json{{"format", "turbid report 1"},
+            {"version", TURBID_VERSION},
+            {"command", r.command_line},
+            {"scene", scene_part(r.scene)},
+            {"device", device_part(r.device.device)},
+            {"features", features_part(r.features)},
+            {"medium", medium_part(r.scene, r.survey)},
+            {"solver",
+             {{"name", s.solver},
+              {"seed", r.scene.solver.seed},
+              {"channels", s.channels},
+              {"rays", s.rays},
+              {"march_batches", s.march_batches},
+              {"iterations", s.iterations},
+              {"error_estimate", s.error_estimate},
+              {"active_blocks", s.active_blocks},
+              {"active_voxels", s.active_voxels}}},
+            {"energy", energy_part(s.energy, r.allowed_imbalance)}};
+  json["device"]["chosen_because"] = r.device.reason;
+  if (r.exposure) {
+    const Camera& camera = r.scene.camera;
+    json["picture"] = {{"width", camera.width}, {"height", camera.height}, {"samples", camera.samples}, {"exposure_stops", *r.exposure}};
+  }
+  json["seconds"] = seconds_part(r.times);
+  json["peak_memory_bytes"] = peak_memory();
+  json["checksums"] = named(r.checksums);
+  json["outputs"] = named(r.outputs);
+  json["warnings"] = r.warnings;
+  return document(json);
+}
+
+}  // namespace turbid

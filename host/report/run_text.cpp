@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// What render and solve print for people.
+#include <cstdio>
+
+#include "host/report/run_report.h"
+
+namespace turbid {
+namespace {
+
+std::string line(const char* format, auto... values) {
+  char text[1024];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+std::string row(const char* name, glm::dvec3 watts) {
+  return line("  %-28s %12.6g %12.6g %12.6g\n", name, watts.x, watts.y, watts.z);
+}
+
+std::string energy_table(const EnergyBalance& e, double allowed) {
+  static const char* const kTowards[6] = {"  towards -x", "  towards +x", "  towards -y",
+                                          "  towards +y", "  towards -z", "  towards +z"};
+  std::string text = line("energy [W]                              red        green         blue\n");
+  text += row("emitted", e.emitted);
+  text += row("missed the medium", e.missed);
+  text += row("reflected at entry", e.reflected);
+  text += row("absorbed", e.absorbed);
+  text += row("absorbed by opaque surfaces", e.absorbed_opaque);
+  text += row("escaped", e.escaped);
+  for (std::size_t face = 0; face < 6; ++face) text += row(kTowards[face], e.escaped_faces[face]);
+  text += row("in flight", e.in_flight);
+  text += line("  imbalance %.2g (up to %.0e is allowed)\n", e.imbalance(), allowed);
+  return text;
+}
+
+std::string with_commas(std::size_t number) {
+  std::string digits = std::to_string(number);
+  for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) digits.insert(static_cast<std::size_t>(at), ",");
+  return digits;
+}
+
+}  // namespace
+
+std::string report_text(const RunReport& r, bool brief) {
+  std::string text;
+  for (const auto& [name, file] : r.outputs) text += line("%-10s ", name.c_str()) + file + "\n";
+  if (brief) return text;
+  const SolverReport& s = r.solver;
+  const GridFrame& frame = r.scene.medium.frame;
+  text += "device     " + r.device.device.label() + "\n";
+  text += line("grid       %d x %d x %d voxels of %g %s, %s of them scatter\n", frame.voxels.x, frame.voxels.y, frame.voxels.z,
+               frame.voxel_size, r.scene.unit.c_str(), with_commas(r.survey.active_voxels).c_str());
+  text += line("solver     %s: %s rays in %d batches, %d iterations, estimated error %.2g\n", s.solver.c_str(),
+               with_commas(s.rays).c_str(), s.march_batches, s.iterations, s.error_estimate);
+  text += "times     ";
+  double total = 0;
+  for (const StageTime& stage : r.times) {
+    text += line(" %s %.2f s,", stage.name.c_str(), stage.seconds);
+    total += stage.seconds;
+  }
+  text += line(" in all %.2f s\n", total);
+  return text + energy_table(s.energy, r.allowed_imbalance);
+}
+
+}  // namespace turbid

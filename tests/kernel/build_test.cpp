@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every kernel file builds for every combination of its integers, and stops where one is missing.
+#include <gtest/gtest.h>
+
+#include "host/base/errors.h"
+#include "tests/support/test_media.h"
+
+namespace turbid {
+namespace {
+
+TEST(KernelFiles, RayProgramsBuildForEveryKindOfScene) {
+  for (const char* file : {"march.cl", "view.cl"}) {
+    for (int choice = 0; choice < 32; ++choice) {
+      const long channels = choice & 1 ? 3 : 1, bodies = choice & 2 ? 2 : 0;
+      EXPECT_NO_THROW(test::session().build(file, {{"TURBID_CHANNELS", channels}, {"TURBID_BODIES", bodies},
+                                                   {"TURBID_GRADED", choice >> 2 & 1}, {"TURBID_HETEROGENEOUS", choice >> 3 & 1},
+                                                   {"TURBID_SCATTERING", choice >> 4 & 1}, {"TURBID_VOXELS_X", 16},
+                                                   {"TURBID_VOXELS_Y", 24}, {"TURBID_VOXELS_Z", 8}}))
+          << file << " " << choice;
+    }
+  }
+}
+
+TEST(KernelFiles, LatticesOfEitherEdgeBuildForEveryCollision) {
+  for (long edge : {4, 8}) {
+    for (long collision = 0; collision < 4; ++collision)
+      EXPECT_NO_THROW(test::session().build("lattice.cl", {{"TURBID_EDGE", edge}, {"TURBID_COLLISION", collision}}));
+  }
+}
+
+TEST(KernelFiles, TheSteadySolveBuilds) { EXPECT_NO_THROW(test::session().build("steady.cl", {})); }
+
+TEST(KernelFiles, AMissingIntegerIsAnErrorThatNamesIt) {
+  try {
+    test::session().build("lattice.cl", {{"TURBID_EDGE", 8}});
+    FAIL() << "built";
+  } catch (const DeviceError& error) {
+    EXPECT_NE(std::string(error.what()).find("TURBID_COLLISION"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("lattice.cl"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace turbid

@@ -56,10 +56,10 @@ Answer solve_steady(const DiffusionMedium& medium, const std::vector<float>& q, 
 std::vector<float> solve_lattice(const DiffusionMedium& medium, const std::vector<float>& q, CollisionVariant variant) {
   LatticeSettings settings;
   settings.collision = variant;
-  settings.tolerance = 1e-6f;
+  settings.tolerance = 1e-5f;
   Lattice lattice(test::session(), medium, settings);
   lattice.set_source(q);
-  EXPECT_LT(lattice.relax(), 1e-6);
+  EXPECT_LT(lattice.relax(), 1e-5);
   return lattice.read_fluence();
 }
 
@@ -138,11 +138,20 @@ TEST(DiffusionCoefficient, IsAThirdOfTheMeanFreePathForAnyOpticalThicknessOfAVox
   }
 }
 
+/// Amplitude per source of a cosine along x, in voxel units.
+double of_diffusion(double s, double s_a, double k) { return 1 / (s_a + k * k / (3 * s)); }
+/// Of transport along six directions only, which a single relaxation time converges to (ray effects stay: numerics section 0):
+/// +-df/dx + s f = Q/6 along x, s f = Q/6 along the others, Q = s_s phi + q.
+double of_six_directions(double s, double s_a, double k) {
+  const double g = (s / (s * s + k * k) + 2 / s) / 3;
+  return g / (1 - (s - s_a) * g);
+}
+
 /// Relative error of the cosine mode at n voxels per wave of 16 mean free paths, albedo .9.
 template <class Solve>
-double cosine_error(int n, const Solve& solve) {
+double cosine_error(int n, double (*exact)(double, double, double), const Solve& solve) {
   const double s = 16.0 / n, s_a = 0.1 * s, k = 2 * kPi / n;
-  return std::abs(cosine_amplitude(n, s, s_a, solve) * (s_a + k * k / (3 * s)) - 1);
+  return std::abs(cosine_amplitude(n, s, s_a, solve) / exact(s, s_a, k) - 1);
 }
 
 TEST(CosineMode, ConvergesWithSecondOrderBySteadySolveAndTwoRelaxationTimes) {
@@ -151,20 +160,21 @@ TEST(CosineMode, ConvergesWithSecondOrderBySteadySolveAndTwoRelaxationTimes) {
     double error[3];
     for (int level = 0; level < 3; ++level) {
       const int n = 16 << level;
-      error[level] = solver == 0   ? cosine_error(n, with_steady)
-                     : solver == 1 ? cosine_error(n, with_lattice(CollisionVariant::trt))
-                                   : cosine_error(n, with_lattice(CollisionVariant::trapezoid));
+      error[level] = solver == 0   ? cosine_error(n, of_diffusion, with_steady)
+                     : solver == 1 ? cosine_error(n, of_diffusion, with_lattice(CollisionVariant::trt))
+                                   : cosine_error(n, of_six_directions, with_lattice(CollisionVariant::trapezoid));
     }
     EXPECT_GT(test::observed_order(error[0], error[1]), 1.9) << solver;
     EXPECT_GT(test::observed_order(error[1], error[2]), 1.9) << solver;
-    RecordProperty("error_at_64", std::to_string(error[2]));
+    RecordProperty("errors_" + std::to_string(solver), std::to_string(error[0]) + " " + std::to_string(error[1]) + " " + std::to_string(error[2]));
   }
 }
 
 TEST(CosineMode, ConvergesWithFirstOrderByThePapersCollision) {
   for (CollisionVariant variant : {CollisionVariant::paper}) {
     double error[3];
-    for (int level = 0; level < 3; ++level) error[level] = cosine_error(16 << level, with_lattice(variant));
+    for (int level = 0; level < 3; ++level) error[level] = cosine_error(16 << level, of_six_directions, with_lattice(variant));
+    RecordProperty("errors", std::to_string(error[0]) + " " + std::to_string(error[1]) + " " + std::to_string(error[2]));
     // Numerics section 1: 1.03 to 1.07 from n = 8 to 128.
     EXPECT_NEAR(test::observed_order(error[0], error[1]), 1, 0.15);
     EXPECT_NEAR(test::observed_order(error[1], error[2]), 1, 0.15);
@@ -184,9 +194,13 @@ double green_error(double s) {
   const double d = 1 / (3 * s), kappa = std::sqrt(s_a / d);
   double difference = 0, norm = 0;
   for (std::size_t i = 0; i < q.size(); ++i) {
-    const double r = glm::length(glm::dvec3(voxel_of(medium, i)) + 0.5);
-    if (r * s < 2 || r * s > 12) continue;
-    const double expected = std::exp(-kappa * r) / (4 * kPi * d * r);
+    const glm::dvec3 x = glm::dvec3(voxel_of(medium, i)) + 0.5;
+    if (glm::length(x) * s < 2 || glm::length(x) * s > 12) continue;
+    double expected = 0;  // the source and its seven mirror images
+    for (int image = 0; image < 8; ++image) {
+      const double r = glm::length(x - glm::dvec3(image & 1 ? -0.5 : 0.5, image & 2 ? -0.5 : 0.5, image & 4 ? -0.5 : 0.5));
+      expected += 0.125 * std::exp(-kappa * r) / (4 * kPi * d * r);
+    }
     difference += std::pow(answer.fluence[i] - expected, 2);
     norm += expected * expected;
   }

@@ -27,7 +27,7 @@ double luneburg_error(double step) {
   for (double b : {-0.9, -0.6, -0.3, 0.0, 0.2, 0.5, 0.8, 0.95})
     rays.push_back({centre + radius * glm::dvec3(-std::sqrt(1 - b * b), b, 0), {1, 0, 0}});
   // In tau the path is a harmonic oscillation of frequency 1/R: all rays meet after pi R / 2.
-  const int steps = static_cast<int>(std::lround(kPi / 2 / step));
+  const int steps = static_cast<int>(std::lround(kPi / 2 * std::sqrt(2.0) / step));  // a step is an arc at the largest index
   const double dtau = kPi / 2 * radius / steps;
   double worst = 0;
   for (const auto& ray : test::trace(medium, rays, static_cast<float>(dtau / medium.region_params[0].tau_per_arc), steps)) {
@@ -116,9 +116,9 @@ TEST(GradientRod, HasTheKnownPeriodWithSecondOrder) {
 
 /// A domain whose upper half along z is glass, with a surface between two voxel layers.
 MediumDescription half_glass(SurfaceKind surface, float blur = 1) {
-  MediumDescription scene = test::empty_domain({32, 32, 48}, 1.0f);
+  MediumDescription scene = test::empty_domain({96, 16, 48}, 1.0f);
   scene.smoothing_voxels = blur;
-  test::add_body(scene, make_box({200, 200, 100}, test::at({16, 16, 74})), test::make_material({.eta = 1.5f}), surface);
+  test::add_body(scene, make_box({200, 200, 100}, test::at({48, 8, 74})), test::make_material({.eta = 1.5f}), surface);
   return scene;
 }
 
@@ -126,7 +126,7 @@ test::ProbeRay towards_surface(double degrees, bool from_glass) {
   const double angle = glm::radians(degrees), sign = from_glass ? -1 : 1, eta = from_glass ? 1.5 : 1;
   // Ten voxels before the surface at z = 24.
   const glm::dvec3 d(std::sin(angle), 0, sign * std::cos(angle));
-  const glm::dvec3 x = glm::dvec3(12, 16, 24) - d * (10 / std::cos(angle));
+  const glm::dvec3 x = glm::dvec3(2, 8, 24) - d * (10 / std::cos(angle));
   test::ProbeRay ray{x, eta * d, from_glass ? 1 : 0};
   ray.x.x = 2.0f;  // translated: the surface is flat
   return ray;
@@ -141,7 +141,7 @@ TEST(FlatSurface, RefractsThirtyDegreesToNineteenPointFour) {
   EXPECT_NEAR(angle_of(out[0]), 19.471221, 1e-4);  // the sampled normal of a plane is exact up to rounding
   EXPECT_NEAR(angle_of(out[1]), 30, 1e-4);
   EXPECT_NEAR(angle_of(out[2]), 45, 1e-4);  // total reflection
-  EXPECT_EQ(out[2].face, 1);
+  EXPECT_EQ(out[2].face, 5);
   EXPECT_GT(out[2].v.z, 0);
 }
 
@@ -159,7 +159,7 @@ TEST(BlurredSurface, RefractsBySnellAndReflectsEveryRayPastTheCriticalAngle) {
     expected.push_back(glm::degrees(std::asin(std::sin(glm::radians(degrees)) * 1.5)));
   }
   double sum = 0;
-  const auto out = test::trace(medium, rays, 0.5f, 60);
+  const auto out = test::trace(medium, rays, 0.5f, 80);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     EXPECT_EQ(out[i].v.z > 0, rays[i].v.z > 0);
     sum += std::pow(angle_of(out[i]) - expected[i], 2);
@@ -168,7 +168,7 @@ TEST(BlurredSurface, RefractsBySnellAndReflectsEveryRayPastTheCriticalAngle) {
   RecordProperty("rms_degrees", std::to_string(rms));
   EXPECT_LT(rms, 0.15);
   std::vector<test::ProbeRay> steep;
-  for (double degrees = 43; degrees < 80; degrees += 3) steep.push_back(towards_surface(degrees, true));
+  for (double degrees = 43; degrees < 72; degrees += 3) steep.push_back(towards_surface(degrees, true));
   for (const auto& ray : test::trace(medium, steep, 0.5f, 4096)) EXPECT_GT(ray.v.z, 0) << angle_of(ray);
 }
 

@@ -94,7 +94,7 @@ static void collect(global long* ground, global int* ground_rays, global long* t
 kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, global RayState* next,
                   global int* next_count, global long* deposit, global long* tallies, global long* ground,
                   global int* ground_rays, global long* transmitted) {
-  const int index = get_global_id(0);
+  const int index = p.first_ray + get_global_id(0);
   if (index >= p.ray_count) return;
   const Medium medium = MEDIUM_FROM_ARGUMENTS;
   const global RayState* state = rays + index;

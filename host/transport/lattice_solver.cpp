@@ -17,14 +17,14 @@ void LatticeSolver::march_all(March& march) {
     march.enqueue_batch();
     // Transport is linear: what batch i left may relax while batch i + 1 is under way.
     if (march.batches() > 1) lattice_->enqueue_sweeps(context_.settings.lattice.sweeps_per_batch);
-    march.finish_batch();
+    march.finish_batch([&] { context_.progress.update(march_progress(march)); });
     context_.session.lattice_queue().finish();
     if (march.rays_left() > 0) {
       const LightSource so_far =
           gather_source(march.read_deposit(), march.watts_per_unit(), device_medium(), diffusion_medium());
       lattice_->set_source(so_far.power);
     }
-    context_.progress.update(1.0 - static_cast<double>(march.rays_left()) / static_cast<double>(std::max<std::size_t>(first_ray_count_, 1)));
+    context_.progress.update(march_progress(march));
   }
 }
 

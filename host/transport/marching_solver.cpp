@@ -37,15 +37,23 @@ void MarchingSolver::prepare(const MediumVolume& medium) {
   surfaces_.emplace(entry_surfaces(context_.description, medium, false));
   context_.progress.stage("prepare");
   diffusion_.emplace(make_diffusion_medium(medium, context_.features.channels));
+  context_.progress.update(0.4);
   march_.emplace(context_.session, *device_, context_.settings.march, medium.faces(), context_.surroundings);
+  context_.progress.update(0.6);
   if (context_.features.scattering) prepare_diffusion(*diffusion_);
+  context_.progress.update(1.0);
+}
+
+double MarchingSolver::march_progress(const March& march) const {
+  const double all = static_cast<double>(std::max<std::size_t>(first_ray_count_, 1));
+  return std::max(0.0, 1.0 - static_cast<double>(march.rays_left()) / all);
 }
 
 void MarchingSolver::march_all(March& march) {
   while (march.rays_left() > 0) {
     march.enqueue_batch();
-    march.finish_batch();
-    context_.progress.update(1.0 - static_cast<double>(march.rays_left()) / static_cast<double>(std::max<std::size_t>(first_ray_count_, 1)));
+    march.finish_batch([&] { context_.progress.update(march_progress(march)); });
+    context_.progress.update(march_progress(march));
   }
 }
 

@@ -40,6 +40,9 @@ class MarchingSolver : public TransportSolver {
   virtual void march_all(March&);
   virtual DiffuseLight diffuse(const LightSource&) = 0;
 
+  /// Share of the rays that have ended.
+  double march_progress(const March&) const;
+
   SolverContext context_;
   std::size_t first_ray_count_ = 0;
 

@@ -30,6 +30,7 @@ class RayStarter {
     centre_ = surfaces.bounds.centre();
     radius_ = 0.5f * glm::length(surfaces.bounds.size()) * 1.001f + 1e-3f * frame_.voxel_size;
     texel_ = frame_.voxel_size / std::sqrt(march.rays_per_face);
+    outside_eta_ = medium.region(0).eta;
   }
 
   void add(const Light& light) {
@@ -61,23 +62,16 @@ class RayStarter {
     return owner[0];
   }
 
-  glm::vec3 channels(glm::vec3 rgb) const {
-    const SceneFeatures& features = device_.features;
-    if (features.channels == 3) return rgb;
-    // One channel carries the brightest colour; the others follow by the scene's tint.
-    const int strongest = features.tint.r >= features.tint.g && features.tint.r >= features.tint.b   ? 0
-                          : features.tint.g >= features.tint.b ? 1
-                                                               : 2;
-    return {rgb[strongest] / std::max(features.tint[strongest], 1e-30f), 0.0f, 0.0f};
-  }
+  glm::vec3 channels(glm::vec3 rgb) const { return device_.features.to_channels(rgb); }
 
-  void push(glm::vec3 position, glm::vec3 direction, glm::vec3 normal, int region, bool entering, glm::dvec3 power,
+  /// `velocity`: direction times the index at the start.
+  void push(glm::vec3 position, glm::vec3 velocity, glm::vec3 normal, int region, bool entering, glm::dvec3 power,
             std::ptrdiff_t texel = -1) {
     RayState ray{};
     const glm::vec3 x = glm::clamp((position - frame_.origin) / frame_.voxel_size, glm::vec3(0), glm::vec3(frame_.voxels));
     for (int i = 0; i < 3; ++i) {
       ray.position[i] = x[i];
-      ray.velocity[i] = direction[i];
+      ray.velocity[i] = velocity[i];
       ray.normal[i] = normal[i];
       ray.power[i] = static_cast<float>(power[i]);
     }
@@ -105,7 +99,7 @@ class RayStarter {
     if (medium_.region(region).smooth_surface && region > 0) {
       // The index starts to change before the surface: start at least four standard deviations of its blur ahead.
       const float back = (4.0f * medium_.smoothing_voxels() + 2.0f) * frame_.voxel_size;
-      push(inside_domain(hit, direction, back), direction, -direction, 0, false, power);
+      push(inside_domain(hit, direction, back), outside_eta_ * direction, -direction, 0, false, power);
       return;
     }
     const std::ptrdiff_t texel = has_map ? static_cast<std::ptrdiff_t>(texels_before_ + i) : -1;
@@ -113,7 +107,7 @@ class RayStarter {
       result_.texel_power.resize(std::max(result_.texel_power.size(), static_cast<std::size_t>(texel) + 1), glm::dvec3(0));
       result_.texel_power[texel] = power;
     }
-    push(hit, direction, image.normal[i], region, region > 0, power, texel);
+    push(hit, outside_eta_ * direction, image.normal[i], region, region > 0, power, texel);
   }
 
   /// hit - back * direction, or where the ray enters the domain if that lies outside.
@@ -250,6 +244,7 @@ class RayStarter {
   std::uint64_t seed_;
   glm::vec3 centre_{0};
   float radius_ = 1, texel_ = 1;
+  float outside_eta_ = 1;  // of the ambient, and so of what surrounds the domain
   std::size_t texels_before_ = 0;   // of earlier lights' shadow maps
   LightRays result_;
   ShadowMap shadow_;

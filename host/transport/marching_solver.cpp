@@ -36,7 +36,7 @@ void MarchingSolver::prepare(const MediumVolume& medium) {
   device_ = std::make_shared<const DeviceMedium>(upload_medium(context_.session, medium, context_.features));
   surfaces_.emplace(entry_surfaces(context_.description, medium, false));
   context_.progress.stage("prepare");
-  diffusion_.emplace(make_diffusion_medium(medium, context_.features.channels));
+  diffusion_.emplace(make_diffusion_medium(medium, context_.features.channels, context_.features.first_colour()));
   context_.progress.update(0.4);
   march_.emplace(context_.session, *device_, context_.settings.march, medium.faces(), context_.surroundings);
   context_.progress.update(0.6);

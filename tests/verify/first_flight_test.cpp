@@ -65,6 +65,21 @@ TEST(BeerLambert, AttenuationFollowsAVaryingCoefficient) {
               1e-4);  // 32 steps' rounding; the half voxel at either end
 }
 
+TEST(PeriodicDomain, IsCrossedAsIfItWentOn) {
+  // Light at 45 degrees through a domain as wide as it is high passes every x once, wherever it enters and wraps: the
+  // depth is sqrt(2) times the whole integral of sigma_a = .01 + .01 x over 16 voxels.
+  MediumDescription scene = test::empty_domain(glm::ivec3(16), 1.0f, FaceBoundary::periodic);
+  scene.faces[2] = scene.faces[3] = FaceBoundary::open;
+  Material material = test::make_material({});
+  material.sigma_a = expression_field("0.01 + 0.01*x");
+  test::set_ambient(scene, material);
+  const test::Run run = test::run(scene, {test::sunlight({1, -1, 0})});
+  const EnergyBalance& e = run.energy();
+  const double depth = std::sqrt(2) * 16 * (0.01 + 0.01 * 8);
+  // Steps are cut at the seam; one of half a voxel there sees the mean of a piece: (slope * step)^2 is 2e-5.
+  EXPECT_NEAR(e.escaped_faces[2].x / (e.emitted.x - e.missed.x) / std::exp(-depth), 1, 1e-3);
+}
+
 TEST(LightEntry, MatchedIndicesOtherThanOneReflectNothing) {
   // A body of the ambient's own index is no interface, also when that index is water's and the ambient is clear.
   for (bool participating : {false, true}) {

@@ -216,39 +216,50 @@ TEST(View, LambertsGroundUnderALampHasTheKnownRadiance) {
   }
 }
 
-TEST(View, AnOpaqueBallUnderTheSunThrowsItsCrossSectionAsShadow) {
+TEST(View, OpaqueBallsUnderTheSunThrowTheirCrossSectionsAsShadows) {
+  // Two unlike balls, so that a shadow map read upside-down or mirrored shows.
+  const glm::vec3 places[2] = {{2, 0, 3}, {-4, 1, -4}};
+  const float radii[2] = {3.5f, 1.5f};
   MediumDescription scene = test::empty_domain(glm::ivec3(16), 1.0f, FaceBoundary::open, true);
   Material opaque = test::make_material({});
   opaque.opaque = true;
-  test::add_body(scene, make_sphere(5, {}), opaque);
+  for (int i = 0; i < 2; ++i) test::add_body(scene, make_sphere(radii[i], test::at(places[i])), opaque);
   const LightList sun{test::sunlight({0, -1, 0}, glm::vec3(2))};
   Surroundings surroundings;
   surroundings.ground = Ground{.height = -20, .colour = glm::vec3(0.5f), .colour2 = glm::vec3(0.5f), .checker_size = 0};
   const test::Run run = test::run(scene, sun, {}, surroundings);
-  // From below nothing would be seen of the ground: look from the side, above, past the ball.
   const int pixels = 160;
-  const Camera camera = camera_at({0, -10, 40}, {0, -20, 0}, 40, pixels);
+  const Camera camera = camera_at({0, -10, 40}, {0, -20, 0}, 40, pixels);  // from the side, below the balls
   const ViewImage image = test::look_at(run, sun, camera, {}, surroundings);
-  // Each ground pixel stands for an area d^2 dOmega / cos; sum what is missing.
-  const glm::dvec3 eye(camera.position), forward = glm::normalize(glm::dvec3(camera.target) - eye), right(1, 0, 0),
-                                         up = glm::cross(right, forward);
+  const glm::dvec3 eye(camera.position), forward = glm::normalize(glm::dvec3(camera.target) - eye), right(1, 0, 0);
+  const glm::dvec3 up = glm::cross(right, forward);
   const double t = std::tan(glm::radians(20.0)), size = 2 * t / pixels, lit = 2 * 0.5 / kPi;
-  double shadow = 0;
+  // Each pixel of the ground stands for the area d^2 dOmega / cos; summed is what is missing there, and where.
+  double shadow = 0, expected = 0;
+  glm::dvec2 moment(0), expected_moment(0);
+  for (int i = 0; i < 2; ++i) {
+    const double area = kPi * radii[i] * radii[i];
+    expected += area;
+    expected_moment += area * glm::dvec2(places[i].x, places[i].z);
+  }
   for (int y = 0; y < pixels; ++y) {
     for (int x = 0; x < pixels; ++x) {
       const glm::dvec3 d = glm::normalize(forward + right * (t * (2 * (x + 0.5) / pixels - 1)) +
                                           up * (t * (1 - 2 * (y + 0.5) / pixels)));
       if (d.y > -0.02) continue;
-      const double distance = -10 / d.y, depth = image.depth[y * pixels + x];
-      if (std::abs(depth / distance - 1) > 1e-3) continue;  // the ball is in front
-      const double cosine = glm::dot(d, forward),
-                   area = size * size * cosine * cosine * cosine * distance * distance / -d.y;
+      const double distance = -10 / d.y, cosine = glm::dot(d, forward);
       const glm::dvec3 hit = eye + distance * d;
-      if (glm::length(glm::dvec2(hit.x, hit.z)) > 12) continue;
-      shadow += area * (1 - image.colour[y * pixels + x].x / lit);
+      if (glm::length(glm::dvec2(hit.x, hit.z)) > 14) continue;
+      EXPECT_NEAR(image.depth[y * pixels + x] / distance, 1, 1e-3);  // nothing stands before the ground
+      const double missing = size * size * cosine * cosine * cosine * distance * distance / -d.y *
+                             (1 - image.colour[y * pixels + x].x / lit);
+      shadow += missing;
+      moment += missing * glm::dvec2(hit.x, hit.z);
     }
   }
-  EXPECT_NEAR(shadow / (kPi * 25), 1, 0.02);  // shadow map texels of 0.7 voxel, antialiased over two
+  // Shadow map texels of 0.7 voxel, antialiased over two: 2 % of the area, a tenth of a voxel of the place.
+  EXPECT_NEAR(shadow / expected, 1, 0.02);
+  EXPECT_LT(glm::length(moment / shadow - expected_moment / expected), 0.1);
 }
 
 }  // namespace

@@ -250,18 +250,20 @@ BlockFaces faces_of_block(const DiffusionMedium& out, const MediumVolume& medium
         continue;
       }
       double a = 1.0;
+      bool boundary_is_opaque = false;
       if (other_owner < 0) {
         if (medium.faces()[face] != FaceBoundary::open) continue;  // mirror: nothing crosses
       } else {
         if (!at_domain_face) cut = cut_by(distances, std::max(r, other_owner), voxel, axis, sign);
         const Region& beyond = medium.region(other_owner);
+        boundary_is_opaque = beyond.opaque;
         if (!beyond.opaque) {
           // A blurred surface refracts as much as a sharp one in the end: from the body's own index to the ambient's.
           const float inside = joined(region, beyond) ? rounded_eta(region.eta) : eta_here;
           a = moments.extrapolation(inside, rounded_eta(beyond.eta));
         }
       }
-      BoundaryFace boundary{block, static_cast<std::int16_t>(v), static_cast<std::int8_t>(face), {}};
+      BoundaryFace boundary{block, static_cast<std::int16_t>(v), static_cast<std::int8_t>(face), boundary_is_opaque, {}};
       for (int c = 0; c < out.channels; ++c) {
         const double value = (2.0 * a / 3.0) / cut.normal + out.s[out.index(c, block, v)] * (cut.distance - 0.5);
         boundary.c[c] = static_cast<float>(std::max(value, 0.02));

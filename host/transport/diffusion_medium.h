@@ -22,6 +22,7 @@ struct BoundaryFace {
   std::int32_t block;
   std::int16_t voxel;    ///< within the block, x fastest
   std::int8_t face;      ///< 0..5: -x, +x, -y, +y, -z, +z
+  bool opaque;           ///< towards an opaque body, which absorbs what comes
   float c[3];            ///< per channel, >= 0.02
 };
 

@@ -30,7 +30,6 @@ class RayStarter {
     centre_ = surfaces.bounds.centre();
     radius_ = 0.5f * glm::length(surfaces.bounds.size()) * 1.001f + 1e-3f * frame_.voxel_size;
     texel_ = frame_.voxel_size / std::sqrt(march.rays_per_face);
-    outside_eta_ = medium.region(0).eta;
   }
 
   void add(const Light& light) {
@@ -62,6 +61,13 @@ class RayStarter {
     return owner[0];
   }
 
+  float ambient_eta(glm::vec3 position) const {
+    if (!medium_.region(0).graded_index) return medium_.region(0).eta;
+    std::array<float, 1> eta{};
+    medium_.read_eta(0, glm::ivec3(glm::floor((position - frame_.origin) / frame_.voxel_size)), glm::ivec3(1), eta);
+    return eta[0];
+  }
+
   glm::vec3 channels(glm::vec3 rgb) const { return device_.features.to_channels(rgb); }
 
   /// `velocity`: direction times the index at the start.
@@ -77,7 +83,7 @@ class RayStarter {
     }
     ray.region = region;
     ray.entering = entering;
-    ray.grace = 1.5f;
+    ray.grace = entering ? 1.5f : 0.0f;  // see kernels/lib/trace.h: the sampled surface is coarser than the rasterised one
     ray.texel = static_cast<int>(texel);
     ray.floor_power = march_.min_power * std::max({ray.power[0], ray.power[1], ray.power[2]});
     if (ray.floor_power == 0.0f && std::max({ray.power[0], ray.power[1], ray.power[2]}) == 0.0f) return;
@@ -99,7 +105,8 @@ class RayStarter {
     if (medium_.region(region).smooth_surface && region > 0) {
       // The index starts to change before the surface: start at least four standard deviations of its blur ahead.
       const float back = (4.0f * medium_.smoothing_voxels() + 2.0f) * frame_.voxel_size;
-      push(inside_domain(hit, direction, back), outside_eta_ * direction, -direction, 0, false, power);
+      const glm::vec3 start = inside_domain(hit, direction, back);
+      push(start, ambient_eta(start) * direction, -direction, 0, false, power);
       return;
     }
     const std::ptrdiff_t texel = has_map ? static_cast<std::ptrdiff_t>(texels_before_ + i) : -1;
@@ -107,7 +114,7 @@ class RayStarter {
       result_.texel_power.resize(std::max(result_.texel_power.size(), static_cast<std::size_t>(texel) + 1), glm::dvec3(0));
       result_.texel_power[texel] = power;
     }
-    push(hit, outside_eta_ * direction, image.normal[i], region, region > 0, power, texel);
+    push(hit, ambient_eta(hit) * direction, image.normal[i], region, region > 0, power, texel);
   }
 
   /// hit - back * direction, or where the ray enters the domain if that lies outside.
@@ -244,7 +251,6 @@ class RayStarter {
   std::uint64_t seed_;
   glm::vec3 centre_{0};
   float radius_ = 1, texel_ = 1;
-  float outside_eta_ = 1;  // of the ambient, and so of what surrounds the domain
   std::size_t texels_before_ = 0;   // of earlier lights' shadow maps
   LightRays result_;
   ShadowMap shadow_;

@@ -152,7 +152,7 @@ static Step advance(const Medium* medium, Ray* ray, float step_size) {
 #if TURBID_GRADED
   if (graded) {
     // The closing kick; after a shortened step the velocity follows the part that was done.
-    const float done = fast_length(to - from) / fmax(fast_length(v) * dtau, 1e-12f);
+    const float done = length(to - from) / fmax(length(v) * dtau, 1e-12f);
     const float4 u = index_at(medium, ray->region, locate(to));
     v = ray->v + (v - ray->v) * done + 0.5f * dtau * done * u.xyz;
   }

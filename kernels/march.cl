@@ -107,7 +107,7 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
   bool alive = true;
 
   if (state->entering) {
-    const float eta_from = fast_length(ray.v);
+    const float eta_from = length(ray.v);
     const Cell cell = locate(ray.x);
     const float eta_to = eta_at(&medium, ray.region, cell);
     const float3 direction = ray.v / eta_from;
@@ -180,7 +180,7 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
         alive = false;
         break;
       }
-      const float eta_from = fast_length(ray.v);
+      const float eta_from = length(ray.v);
       const float eta_to = eta_at(&medium, next_region, locate(step.beyond));
       const bool no_interface =
           index_matched(&medium, region, next_region, eta_from, eta_to);

@@ -38,6 +38,16 @@ DiffuseLight LatticeSolver::diffuse(const LightSource& source) {
   light.absorbed = energy.absorbed;
   light.escaped = energy.escaped;
   light.stored = energy.stored;
+  // The lattice tells what crosses each boundary face; of it, what went into opaque bodies.
+  const DiffusionMedium& medium = diffusion_medium();
+  for (const BoundaryFace& face : medium.boundary) {
+    if (!face.opaque) continue;
+    for (int c = 0; c < medium.channels; ++c) {
+      const double power = medium.boundary_conductance(face, c) * light.fluence[medium.index(c, face.block, face.voxel)];
+      light.escaped[face.face][c] -= power;
+      light.absorbed_opaque[c] += power;
+    }
+  }
   return light;
 }
 

@@ -62,7 +62,7 @@ void March::start(const LightRays& light) {
   double largest = 0;
   for (int c = 0; c < 3; ++c) largest = std::max(largest, light.emitted[c]);
   // No sum can exceed what is emitted: 2^60 units leave two bits of headroom in 64-bit integers.
-  fixed_per_watt_ = std::exp2(std::floor(60.0 - std::log2(std::max(largest, 1e-30))));
+  fixed_per_watt_ = std::exp2(std::min(std::floor(60.0 - std::log2(std::max(largest, 1e-30))), 120.0));  // fits a float
   params_.fixed_per_watt = static_cast<float>(fixed_per_watt_);
   ray_count_ = light.rays.size();
   batches_ = 0;

@@ -17,6 +17,7 @@ namespace turbid {
 struct DiffuseLight {
   std::vector<float> fluence;       ///< [channel][block][voxel] [W/voxel^2]
   glm::dvec3 absorbed{0};
+  glm::dvec3 absorbed_opaque{0};    ///< diffused into opaque bodies
   std::array<glm::dvec3, 6> escaped{};
   glm::dvec3 stored{0};             ///< still on its way (lattice only)
   int iterations = 0;

@@ -22,24 +22,6 @@ constexpr int kStep[3] = {1, kEdge, kEdge * kEdge};
 /// Which regions are joined by a blurred index, where no interface stands.
 bool joined(const Region& a, const Region& b) { return a.smooth_surface && b.smooth_surface; }
 
-BlockGrid active_blocks(const MediumVolume& medium) {
-  const glm::ivec3 blocks = medium.frame().blocks();
-  std::vector<char> active(blocks.x * blocks.y * blocks.z, 0);
-  parallel_ranges(static_cast<int>(active.size()), [&](int begin, int end) {
-    std::vector<int> owner(kVoxels);
-    for (int i = begin; i < end; ++i) {
-      const glm::ivec3 at(i % blocks.x, (i / blocks.x) % blocks.y, i / (blocks.x * blocks.y));
-      medium.read_owner(kEdge * at, glm::ivec3(kEdge), owner);
-      active[i] = std::any_of(owner.begin(), owner.end(),
-                              [&](int r) { return r >= 0 && medium.region(r).participates(); });
-    }
-  });
-  const auto& faces = medium.faces();
-  return BlockGrid(
-      blocks, kEdge, [&](glm::ivec3 b) { return active[b.x + blocks.x * (b.y + blocks.y * b.z)] != 0; },
-      {faces[0] == FaceBoundary::periodic, faces[2] == FaceBoundary::periodic, faces[4] == FaceBoundary::periodic});
-}
-
 /// Fills the voxels of one block.
 void fill_block(DiffusionMedium& out, const MediumVolume& medium, int block, float floor_s) {
   const glm::ivec3 lower = kEdge * out.blocks.coordinates(block);
@@ -214,6 +196,24 @@ BlockFaces faces_of_block(const DiffusionMedium& out, const MediumVolume& medium
 }
 
 }  // namespace
+
+BlockGrid active_blocks(const MediumVolume& medium) {
+  const glm::ivec3 blocks = medium.frame().blocks();
+  std::vector<char> active(blocks.x * blocks.y * blocks.z, 0);
+  parallel_ranges(static_cast<int>(active.size()), [&](int begin, int end) {
+    std::vector<int> owner(kVoxels);
+    for (int i = begin; i < end; ++i) {
+      const glm::ivec3 at(i % blocks.x, (i / blocks.x) % blocks.y, i / (blocks.x * blocks.y));
+      medium.read_owner(kEdge * at, glm::ivec3(kEdge), owner);
+      active[i] = std::any_of(owner.begin(), owner.end(),
+                              [&](int r) { return r >= 0 && medium.region(r).participates(); });
+    }
+  });
+  const auto& faces = medium.faces();
+  return BlockGrid(
+      blocks, kEdge, [&](glm::ivec3 b) { return active[b.x + blocks.x * (b.y + blocks.y * b.z)] != 0; },
+      {faces[0] == FaceBoundary::periodic, faces[2] == FaceBoundary::periodic, faces[4] == FaceBoundary::periodic});
+}
 
 VoxelRef neighbour_over(const BlockGrid& blocks, int block, int voxel, int face) {
   const int axis = face / 2, step = kStep[axis];

@@ -59,6 +59,9 @@ struct DiffusionMedium {
 /// Conductances T[channel][axis][block][voxel] between active voxels, 0 elsewhere.
 std::vector<float> face_conductances(const DiffusionMedium&);
 
+/// Blocks that hold a voxel in which diffuse light is solved for.
+BlockGrid active_blocks(const MediumVolume&);
+
 DiffusionMedium make_diffusion_medium(const MediumVolume&, int channels);
 
 /// Block and voxel of the neighbour over a face, or block -1.

@@ -61,15 +61,7 @@ class RayStarter {
     return owner[0];
   }
 
-  glm::vec3 channels(glm::vec3 rgb) const {
-    const SceneFeatures& features = device_.features;
-    if (features.channels == 3) return rgb;
-    // One channel carries the brightest colour; the others follow by the scene's tint.
-    const int strongest = features.tint.r >= features.tint.g && features.tint.r >= features.tint.b   ? 0
-                          : features.tint.g >= features.tint.b ? 1
-                                                               : 2;
-    return {rgb[strongest] / std::max(features.tint[strongest], 1e-30f), 0.0f, 0.0f};
-  }
+  glm::vec3 channels(glm::vec3 rgb) const { return light_channels(device_.features, rgb); }
 
   void push(glm::vec3 position, glm::vec3 direction, glm::vec3 normal, int region, bool entering, glm::dvec3 power,
             std::ptrdiff_t texel = -1) {
@@ -257,6 +249,14 @@ class RayStarter {
 };
 
 }  // namespace
+
+glm::vec3 light_channels(const SceneFeatures& features, glm::vec3 rgb) {
+  if (features.channels == 3) return rgb;
+  const int strongest = features.tint.r >= features.tint.g && features.tint.r >= features.tint.b   ? 0
+                        : features.tint.g >= features.tint.b ? 1
+                                                             : 2;
+  return {rgb[strongest] / std::max(features.tint[strongest], 1e-30f), 0.0f, 0.0f};
+}
 
 LightRays start_rays(const LightList& lights, const MediumVolume& medium, const EntrySurfaces& surfaces,
                      const DeviceMedium& device, const MarchSettings& march, std::uint64_t seed) {

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random numbers from counters: Philox4x32-10 (Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1, 2, 3",
+// SC11). Four numbers are a pure function of (counter, key), so a photon's path depends on the seed and on its own number, and
+// on nothing that ran beside it. Own text because Random123's headers do not pass our inlining of includes; the tests hold it
+// to Random123's published known answers.
+#ifndef TURBID_LIB_RANDOM_H
+#define TURBID_LIB_RANDOM_H
+
+static uint4 philox4x32(uint4 counter, uint2 key) {
+  for (int round = 0; round < 10; ++round) {
+    const uint low0 = 0xD2511F53u * counter.x, high0 = mul_hi(0xD2511F53u, counter.x);
+    const uint low1 = 0xCD9E8D57u * counter.z, high1 = mul_hi(0xCD9E8D57u, counter.z);
+    counter = (uint4)(high1 ^ counter.y ^ key.x, low1, high0 ^ counter.w ^ key.y, low0);
+    key += (uint2)(0x9E3779B9u, 0xBB67AE85u);
+  }
+  return counter;
+}
+
+// One stream of numbers: four at a time.
+typedef struct {
+  uint4 counter;  // photon's number (x, y), draw (z), stream (w)
+  uint2 key;      // seed
+} Random;
+
+static uint4 draw(Random* random) {
+  const uint4 result = philox4x32(random->counter, random->key);
+  ++random->counter.z;
+  return result;
+}
+
+// Uniform in (0, 1), never 0 nor 1.
+static float uniform(uint bits) { return ((float)(bits >> 8) + 0.5f) * 0x1p-24f; }
+
+// Exponential of mean 1, from 0 to 22.9.
+static float exponential(uint bits) { return -log(fmin((float)bits * 0x1p-32f + 0x1p-33f, 1.0f)); }
+
+#endif

@@ -7,10 +7,11 @@
 #define TURBID_LIB_RANDOM_H
 
 static uint4 philox4x32(uint4 counter, uint2 key) {
+#pragma unroll
   for (int round = 0; round < 10; ++round) {
-    const uint low0 = 0xD2511F53u * counter.x, high0 = mul_hi(0xD2511F53u, counter.x);
-    const uint low1 = 0xCD9E8D57u * counter.z, high1 = mul_hi(0xCD9E8D57u, counter.z);
-    counter = (uint4)(high1 ^ counter.y ^ key.x, low1, high0 ^ counter.w ^ key.y, low0);
+    // 64-bit products: PoCL puts mul_hi together from 16-bit halves.
+    const ulong a = (ulong)0xD2511F53u * counter.x, b = (ulong)0xCD9E8D57u * counter.z;
+    counter = (uint4)((uint)(b >> 32) ^ counter.y ^ key.x, (uint)b, (uint)(a >> 32) ^ counter.w ^ key.y, (uint)a);
     key += (uint2)(0x9E3779B9u, 0xBB67AE85u);
   }
   return counter;

@@ -38,6 +38,7 @@ void add_inside(PhotonSources& out, const Light& light, int region, const GridFr
 }
 
 void add_rays(PhotonSources& out, const LightRays& rays) {
+  glm::dvec3 carried(0);
   for (const RayState& ray : rays.rays) {
     PhotonSource source{};
     std::copy_n(ray.position, 3, source.position);
@@ -46,10 +47,12 @@ void add_rays(PhotonSources& out, const LightRays& rays) {
     source.region = ray.region;
     source.grace = ray.grace;
     source.kind = ray.entering ? TURBID_SOURCE_ENTERING : TURBID_SOURCE_RAY;
-    out.add(source, {ray.power[0], ray.power[1], ray.power[2]});
+    const glm::dvec3 power(ray.power[0], ray.power[1], ray.power[2]);
+    carried += power;
+    out.add(source, power);
   }
   out.emitted += rays.emitted;
-  out.missed += rays.missed;
+  out.missed += rays.emitted - carried - rays.absorbed_opaque;
   out.absorbed_opaque += rays.absorbed_opaque;
 }
 

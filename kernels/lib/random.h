@@ -29,8 +29,8 @@ static uint4 draw(Random* random) {
   return result;
 }
 
-// Uniform in (0, 1), never 0 nor 1.
-static float uniform(uint bits) { return ((float)(bits >> 8) + 0.5f) * 0x1p-24f; }
+// Uniform in (0, 1), never 0 nor 1: 23 bits and a half.
+static float uniform(uint bits) { return ((float)(bits >> 9) + 0.5f) * 0x1p-23f; }
 
 // Exponential of mean 1, from 0 to 22.9.
 static float exponential(uint bits) { return -log(fmin((float)bits * 0x1p-32f + 0x1p-33f, 1.0f)); }

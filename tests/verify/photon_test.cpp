@@ -122,12 +122,13 @@ TEST(PhotonSurfaces, ReflectByFresnel) {
 }
 
 TEST(PhotonSurfaces, LightTrappedInGlassEndsAsInFlight) {
-  // From the middle of a cube of index 2.5 light at 45 degrees to two axes is totally reflected for ever.
+  // At 45 degrees to four faces of a cube of index 2.5 and parallel to the others, light is totally reflected for ever. It meets
+  // the faces between their middles and edges (edges are rounded by sampling).
   MediumDescription scene = test::empty_domain(glm::ivec3(16), 1.0f);
   test::add_body(scene, make_box({10, 10, 10}, test::at({8, 8, 8})), milk(0, 0, 2.5f));
   SolverSettings settings = photons(1000);
   settings.photon.max_steps = 2000;
-  const auto answer = follow(scene, settings, {source(TURBID_SOURCE_RAY, {8, 8.3f, 8.1f}, {1, 1, 1}, 1)});
+  const auto answer = follow(scene, settings, {source(TURBID_SOURCE_RAY, {5.5f, 8, 8}, {1, 0, 1}, 1)});
   EXPECT_EQ(answer.tallies().in_flight.value.x, 1.0);
   expect_balance(answer.solution);
 }
@@ -173,55 +174,68 @@ TEST(PhotonSphere, LetsOutAsMuchAsTheIndependentProgramSays) {
 }
 
 TEST(PhotonFluence, FallsAroundAPointSourceAsInAnInfiniteMedium) {
-  // Case 10: albedo .9, shells in mean free paths, exact transport. A shell's mean is taken over the voxels whose centres lie
-  // within, weighted by the exact asymptotic shape's share of the shell: for that the reference is read as a value at the
-  // volume-mean radius; voxels of a quarter leave less than half a per cent of it.
-  MediumDescription scene = test::empty_domain(glm::ivec3(64), 0.25f, FaceBoundary::open, true);
-  test::set_ambient(scene, milk(0.9f, 0.1f));
-  const auto answer = follow(scene, photons(120000), LightList{test::point_light({0, 0, 0})});
-  const double inner[3] = {2, 4, 6}, expected[3] = {2.196e-2, 4.212e-3, 1.0195e-3};
-  for (int shell = 0; shell < 3; ++shell) {
-    double sum = 0, volume = 0, variance = 0;
+  // Case 10: albedo .9, means over shells in mean free paths, exact transport. The domain ends after 12 of them. Voxels that a
+  // shell cuts count by their share of it: with voxels of a quarter that leaves less than half a per cent.
+  constexpr int kSeeds = 6;
+  double mean[3][kSeeds] = {};
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    MediumDescription scene = test::empty_domain(glm::ivec3(96), 0.25f, FaceBoundary::open, true);
+    test::set_ambient(scene, milk(0.9f, 0.1f));
+    const auto answer = follow(scene, photons(30000, seed, 2), LightList{test::point_light({0, 0, 0})});
+    double volume[3] = {};
     for (std::size_t at = 0; at < answer.region.size(); ++at) {
-      const glm::vec3 corner = glm::vec3(answer.voxel(at) - 32);
-      double share = 0;
+      const glm::vec3 corner = glm::vec3(answer.voxel(at) - 48);
+      const float middle = 0.25f * glm::length(corner + 0.5f);
+      if (middle < 1.7f || middle > 7.3f) continue;
       for (int i = 0; i < 64; ++i) {
-        const double r = 0.25 * glm::length(corner + (glm::vec3(i & 3, i >> 2 & 3, i >> 4) + 0.5f) * 0.25f);
-        share += r >= inner[shell] && r < inner[shell] + 1 ? 1.0 / 64 : 0.0;
+        const int shell = static_cast<int>(0.25f * glm::length(corner + (glm::vec3(i & 3, i >> 2 & 3, i >> 4) + 0.5f) * 0.25f));
+        if (shell != 2 && shell != 4 && shell != 6) continue;
+        mean[shell / 2 - 1][seed] += answer.fluence(at);
+        volume[shell / 2 - 1] += 1;
       }
-      sum += share * answer.fluence(at);
-      variance += share * share * answer.error(at) * answer.error(at);
-      volume += share;
     }
-    // Neighbouring voxels share photons: their errors add up closer to linearly, by the factor measured below.
-    const double error = 6 * std::sqrt(variance) / volume;
-    EXPECT_NEAR(sum / volume, expected[shell], 3 * error + 0.005 * expected[shell]) << inner[shell];
+    for (int shell = 0; shell < 3; ++shell) mean[shell][seed] /= volume[shell];
+  }
+  const double expected[3] = {2.196e-2, 4.212e-3, 1.0195e-3};
+  for (int shell = 0; shell < 3; ++shell) {
+    double sum = 0, square = 0;
+    for (const double value : mean[shell]) {
+      sum += value / kSeeds;
+      square += value * value / kSeeds;
+    }
+    const double error = std::sqrt((square - sum * sum) / (kSeeds - 1));
+    EXPECT_NEAR(sum, expected[shell], 3 * error + 0.005 * expected[shell]) << 2 * shell + 2;
+    RecordProperty("shell" + std::to_string(2 * shell + 2), std::to_string(sum) + " +- " + std::to_string(error));
   }
 }
 
 TEST(PhotonEquilibrium, InAClosedBoxTheFluenceFollowsTheSquareOfTheIndex) {
   // With emission sigma_a eta^2 everywhere and nothing leaving, the radiance is that of a cavity: fluence = eta^2, whatever
   // scatters, refracts or reflects. A ball of glass, its surface cutting voxels; anisotropic scattering; walls of each kind.
-  MediumDescription scene = test::empty_domain(glm::ivec3(16), 1.0f, FaceBoundary::mirror);
+  MediumDescription scene = test::empty_domain(glm::ivec3(32), 0.5f, FaceBoundary::mirror);
   scene.faces[0] = scene.faces[1] = FaceBoundary::periodic;
   test::set_ambient(scene, test::make_material({.sigma_s = glm::vec3(0.1f), .sigma_a = glm::vec3(0.1f), .emission = glm::vec3(0.1f), .g = 0.5f}));
   test::add_body(scene, make_sphere(5, test::at({8, 8, 8})),
                  test::make_material({.sigma_s = glm::vec3(0.2f), .sigma_a = glm::vec3(0.2f), .emission = glm::vec3(0.45f), .eta = 1.5f}));
   const auto answer = follow(scene, photons(200000), LightList{});
-  double mean[2] = {}, inside[2] = {};
+  double mean[3] = {}, count[3] = {};
   for (std::size_t at = 0; at < answer.region.size(); ++at) {
-    const int r = answer.region[at];
-    mean[r] += answer.fluence(at);
-    inside[r] += 1;
+    const glm::vec3 x = 0.5f * (glm::vec3(answer.voxel(at)) + 0.5f) - 8.0f;
+    const int part = answer.region[at] == 0 ? 0 : glm::length(x) < 4 ? 1 : 2;
+    mean[part] += answer.fluence(at);
+    count[part] += 1;
   }
-  // Voxels count whole for emission and by their centres here: half a per cent for a ball of this size.
-  EXPECT_NEAR(mean[0] / inside[0], 1.0, 0.006);
-  EXPECT_NEAR(mean[1] / inside[1], 2.25, 0.02);
+  // A voxel emits by whom its centre belongs to, as for the other solvers: 0.8 % too much for this ball, most of it felt in the
+  // voxels at its surface. Statistical errors are 0.002.
+  EXPECT_NEAR(mean[0] / count[0], 1.0, 0.008);
+  EXPECT_NEAR(mean[1] / count[1], 2.25, 0.02);
+  EXPECT_NEAR(mean[2] / count[2], 2.25, 0.04);
   expect_balance(answer.solution);
 }
 
 TEST(PhotonEquilibrium, AlsoWhereTheIndexIsGraded) {
-  auto eta = [](float z) { return 1.2f + 0.3f * std::sin(z * 0.4f); };
+  // Level at the mirrors, so that the mirror image goes on smoothly.
+  auto eta = [](float z) { return 1.35f + 0.3f * std::cos(z * static_cast<float>(kPi) / 8); };
   MediumDescription scene = test::empty_domain({8, 8, 16}, 1.0f, FaceBoundary::mirror);
   Material material = milk(0.1f, 0.1f);
   material.eta = std::make_shared<Profile>(eta);
@@ -236,8 +250,9 @@ TEST(PhotonEquilibrium, AlsoWhereTheIndexIsGraded) {
       ratio += answer.fluence(at) / std::pow(eta(layer + 0.5f), 2);
       ++count;
     }
-    // A layer's statistical error is about half a per cent; interpolating eta flattens its extrema by 0.5 per cent of it.
-    EXPECT_NEAR(ratio / count, 1, 0.025) << layer;
+    // A layer's statistical error is about half a per cent; linear interpolation and central differences of eta over voxels
+    // of a sixteenth of its period are off by (2 pi / 16)^2 / 8 of its amplitude: up to 3 per cent of eta^2 between them.
+    EXPECT_NEAR(ratio / count, 1, 0.04) << layer;
   }
   expect_balance(answer.solution);
 }
@@ -258,7 +273,7 @@ TEST(PhotonAccount, EveryWattIsFoundAgainWhateverHappensToIt) {
   inner.direction = {0, 1, 0};
   const auto answer =
       follow(scene, photons(30000), LightList{test::sunlight({0.1f, -1, 0.2f}), test::point_light({40, 6, 6}), spot, inner},
-             Surroundings{.ground = Ground{}});
+             Surroundings{.ground = Ground{.height = -1}});
   const EnergyBalance& energy = answer.solution.report.energy;
   for (int c = 0; c < 3; ++c) {
     EXPECT_GT(energy.absorbed_opaque[c], 0);
@@ -295,15 +310,15 @@ TEST(PhotonErrors, FallAsOneOverTheRootOfThePhotons) {
 }
 
 TEST(PhotonErrors, PullsOfManySeedsLookNormal) {
-  // 80 seeds: (value - exact) / stated error of the transmission follows Student's t with 31 degrees of freedom. Eight cells of
+  // 100 seeds: (value - exact) / stated error of the transmission follows Student's t with 31 degrees of freedom. Eight cells of
   // equal probability; chi-square with 7 degrees of freedom exceeds 24.3 once in a thousand (the seeds are fixed).
   const double expected = 4.0 / 3 / (10 + 2 * 0.710446);
   const double bounds[7] = {-1.1758, -0.6825, -0.3216, 0, 0.3216, 0.6825, 1.1758};  // octiles of t(31)
   int cells[8] = {};
   double mean = 0;
-  constexpr int kSeeds = 80;
+  constexpr int kSeeds = 100;
   for (int seed = 0; seed < kSeeds; ++seed) {
-    const auto answer = follow(test::slab(8, 1.25f, milk(1, 0)), photons(4000, 1000 + seed, 32), {source(TURBID_SOURCE_LAMBERT, kCentre)});
+    const auto answer = follow(test::slab(8, 1.25f, milk(1, 0)), photons(3000, 1 + seed, 32), {source(TURBID_SOURCE_LAMBERT, kCentre)});
     const double value = pull(answer.tallies().escaped_faces[5], expected);
     ++cells[std::upper_bound(bounds, bounds + 7, value) - bounds];
     mean += value / kSeeds;

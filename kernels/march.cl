@@ -77,7 +77,7 @@ static void collect(global long* ground, global int* ground_rays, global long* t
 kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, global RayState* next,
                   global int* next_count, global long* deposit, global long* tallies, global long* ground,
                   global int* ground_rays, global long* transmitted) {
-  const int index = get_global_id(0);
+  const int index = p.first_ray + get_global_id(0);
   if (index >= p.ray_count) return;
   const Medium medium = MEDIUM_FROM_ARGUMENTS;
   const global RayState* state = rays + index;
@@ -90,7 +90,7 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
   bool alive = true;
 
   if (state->entering) {
-    const float eta_from = fast_length(ray.v);
+    const float eta_from = length(ray.v);
     const Cell cell = locate(ray.x);
     const float eta_to = eta_at(&medium, ray.region, cell);
     const float3 direction = ray.v / eta_from;
@@ -163,7 +163,7 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
         alive = false;
         break;
       }
-      const float eta_from = fast_length(ray.v);
+      const float eta_from = length(ray.v);
       const float eta_to = eta_at(&medium, next_region, locate(step.beyond));
       const bool no_interface =
           index_matched(&medium, region, next_region, eta_from, eta_to);

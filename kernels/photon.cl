@@ -26,6 +26,8 @@
 #define ROULETTE_SURVIVAL 0.1f
 // A voxel face nearer than this counts as passed [voxels]: a step that ended on a face does not meet it again.
 #define PASSED 0.01f
+// Beside the events of lib/trace.h: the photon has come down to the ground.
+#define EVENT_GROUND 3
 
 typedef struct {
   Ray ray;
@@ -173,6 +175,16 @@ static int voxel_block(float3 x) {
   return ix + BLOCKS_X * (iy + BLOCKS_Y * iz);
 }
 
+// Adds weight times length to what is pending for a voxel.
+static void count_track(Pending* pending, global long* voxel_sums, const PhotonParams* p, int sum, bool first_flight, float track) {
+  if (sum >= 0 && first_flight) sum += p->voxel_sums;
+  if (sum != pending->sum) {
+    flush_track(pending, voxel_sums, p->unit);
+    pending->sum = sum;
+  }
+  pending->track += track;
+}
+
 // 1 - exp(-x) for x >= 0: a short series where absorption is weak, which is nearly always.
 static float loss_over(float x) {
   return x < 0.03f ? x * (1.0f - x * (0.5f - x * (0.16666667f - 0.041666667f * x))) : -expm1(-x);
@@ -212,6 +224,16 @@ static void scatter(Photon* photon, const Medium* medium, float g, uint4 bits) {
   photon->unscattered = false;
 }
 
+// The photon leaves for good through a face of the domain, and may light the ground outside.
+static void escape(Photon* photon, const PhotonParams* p, global long* tallies, global long* ground, global int* ground_rays,
+                   int face, float3 x, float3 direction) {
+  const GroundMap map = {p->ground_size, p->ground_height, (float2)(p->ground_origin[0], p->ground_origin[1]), p->ground_texel};
+  light_ground(ground, ground_rays, map, x, normalize(direction), photon->weight, p->unit);
+  const long weight = reweigh(photon, 0.0f, p->unit);
+  atom_add((volatile global long*)(tallies + TURBID_PHOTON_ESCAPED + face), weight);
+  if (photon->unscattered) atom_add((volatile global long*)(tallies + TURBID_PHOTON_UNSCATTERED + face), weight);
+}
+
 // One step of the photon; false when it has ended.
 static bool follow(Photon* photon, const Medium* medium, const PhotonParams* p, const global PhotonRegion* constants,
                    const global float* majorants, const global int* block_index, const global short* owner,
@@ -226,17 +248,17 @@ static bool follow(Photon* photon, const Medium* medium, const PhotonParams* p, 
   const float3 from = ray->x;
   const float3 heading = ray->v * rsqrt(dot(ray->v, ray->v));
   const bool attenuates = medium->regions[region].attenuates;
-  float length = distance_to_voxel_face(from, heading);
+  float arc = distance_to_voxel_face(from, heading);
   float per_arc = 1.0f;  // step size that `advance` wants per arc length
 #if TURBID_GRADED || TURBID_BODIES > 0
   const Cell cell = locate(from);
-  if (medium->block_region[cell.block] != region) length = fmin(length, p->step);
+  if (medium->block_region[cell.block] != region) arc = fmin(arc, p->step);
 #endif
 #if TURBID_GRADED
   const int index_set = medium->regions[region].index_set;
   if (index_set >= 0 && tile_of(medium, index_set, cell.block) >= 0) {
-    length = fmin(length, p->step);
-    per_arc = 1.0f / (medium->regions[region].tau_per_arc * fast_length(ray->v));
+    arc = fmin(arc, p->step);
+    per_arc = 1.0f / (medium->regions[region].tau_per_arc * length(ray->v));
   }
 #endif
   float rate = 0.0f;  // of collisions [1/voxel]
@@ -249,44 +271,49 @@ static bool follow(Photon* photon, const Medium* medium, const PhotonParams* p, 
     if (varies) rate = majorants[(p->channel * p->majorant_sets + set) * BLOCKS + voxel_block(from + PASSED * heading)];
 #endif
     if (!varies) rate = constants[region].sigma_s[p->channel];
-    if (photon->optical_depth < rate * length) {
-      length = photon->optical_depth / rate;
+    if (photon->optical_depth < rate * arc) {
+      arc = photon->optical_depth / rate;
       collides = true;
     }
   }
-  const Step step = advance(medium, ray, length * per_arc);
-
+  Step step = advance(medium, ray, arc * per_arc);
   if (p->ground_size > 0 && region == 0 && from.y > p->ground_height && ray->x.y <= p->ground_height) {
-    // The ground cuts through the domain: what reaches it counts as escaped downwards.
-    const GroundMap map = {p->ground_size, p->ground_height, (float2)(p->ground_origin[0], p->ground_origin[1]), p->ground_texel};
-    light_ground(ground, ground_rays, map, from, normalize(ray->x - from), photon->weight, p->unit);
-    const long weight = reweigh(photon, 0.0f, p->unit);
-    atom_add((volatile global long*)(tallies + TURBID_PHOTON_ESCAPED + 2), weight);
-    if (photon->unscattered) atom_add((volatile global long*)(tallies + TURBID_PHOTON_UNSCATTERED + 2), weight);
-    return false;
+    // The ground cuts through the domain: the path ends there.
+    const float part = (from.y - p->ground_height) / (from.y - ray->x.y);
+    step.length *= part;
+    step.middle = from + 0.5f * part * (ray->x - from);
+    step.event = EVENT_GROUND;
   }
 
+  const bool first_flight = photon->unscattered && photon->from_lamp;
+  const float sigma_a = attenuates && !varies ? constants[region].sigma_a[p->channel] : 0.0f;
   if (attenuates) {
     collides = collides && step.event == EVENT_NONE;
     photon->optical_depth = collides ? 0.0f : fmax(photon->optical_depth - rate * step.length, 0.0f);
-    float track = photon->weight * step.length;
     if (pending->absorbing_region != region) flush_absorbed(pending, tallies, region);
-    const float sigma_a = constants[region].sigma_a[p->channel];
-    if (!varies && sigma_a > 0.0f) {
-      const float depth = sigma_a * step.length;
+  }
+  // One segment in one voxel; but where nothing scatters, `advance` goes on through a whole block.
+  float3 middle = step.middle;
+  float piece = step.length, done = 0.0f;
+  const bool pieces = piece > 1.001f * arc + PASSED;
+  do {
+    if (pieces) {
+      piece = fmin(distance_to_voxel_face(from + done * heading, heading), step.length - done);
+      middle = from + (done + 0.5f * piece) * heading;
+    }
+    done += piece;
+    float track = photon->weight * piece;
+    if (sigma_a > 0.0f) {
+      const float depth = sigma_a * piece;
       const float share = loss_over(depth);
       track = depth > 1e-3f ? photon->weight * share / sigma_a : track * (1.0f - depth * (0.5f - 0.16666667f * depth));
       pending->absorbed += reweigh(photon, photon->weight * (1.0f - share), p->unit);
     }
 #if TURBID_SCATTERING
-    int sum = voxel_at(block_index, owner, step.middle, region);
-    if (sum >= 0 && photon->unscattered && photon->from_lamp) sum += p->voxel_sums;
-    if (sum != pending->sum) {
-      flush_track(pending, voxel_sums, p->unit);
-      pending->sum = sum;
-    }
-    pending->track += track;
+    count_track(pending, voxel_sums, p, voxel_at(block_index, owner, middle, region), first_flight, track);
 #endif
+  } while (pieces && done < step.length);
+  if (attenuates) {
     if (collides) {
       const uint4 bits = draw(&photon->random);
       photon->optical_depth = exponential(bits.z);
@@ -309,50 +336,59 @@ static bool follow(Photon* photon, const Medium* medium, const PhotonParams* p, 
     pending->roulette += reweigh(photon, photon->weight / ROULETTE_SURVIVAL, p->unit);
   }
 
+  if (step.event == EVENT_NONE) return true;
+  int next_region = step.next_region;
+  float3 beyond = step.beyond;
+  const int axis = step.face >> 1;
+  if (step.event == EVENT_GROUND) {
+    escape(photon, p, tallies, ground, ground_rays, 2, from, ray->x - from);
+    return false;
+  }
   if (step.event == EVENT_FACE) {
-    const int kind = p->faces[step.face], axis = step.face >> 1;
+    const int kind = p->faces[step.face];
+    if (kind == TURBID_FACE_OPEN) {
+      escape(photon, p, tallies, ground, ground_rays, step.face, ray->x, ray->v);
+      return false;
+    }
     if (kind == TURBID_FACE_MIRROR) {
       if (axis == 0) ray->v.x = -ray->v.x;
       if (axis == 1) ray->v.y = -ray->v.y;
       if (axis == 2) ray->v.z = -ray->v.z;
-    } else if (kind == TURBID_FACE_PERIODIC) {
-      const float other = (step.face & 1) ? 0.0f : 1.0f;
-      if (axis == 0) ray->x.x = other * TURBID_VOXELS_X;
-      if (axis == 1) ray->x.y = other * TURBID_VOXELS_Y;
-      if (axis == 2) ray->x.z = other * TURBID_VOXELS_Z;
-      ray->region = region_at(medium, locate(ray->x));
-    } else {
-      const GroundMap map = {p->ground_size, p->ground_height, (float2)(p->ground_origin[0], p->ground_origin[1]), p->ground_texel};
-      light_ground(ground, ground_rays, map, ray->x, normalize(ray->v), photon->weight, p->unit);
-      const long weight = reweigh(photon, 0.0f, p->unit);
-      atom_add((volatile global long*)(tallies + TURBID_PHOTON_ESCAPED + step.face), weight);
-      if (photon->unscattered) atom_add((volatile global long*)(tallies + TURBID_PHOTON_UNSCATTERED + step.face), weight);
-      return false;
-    }
-  } else if (step.event == EVENT_SURFACE) {
-    const int next_region = step.next_region;
-    if (medium->regions[next_region].opaque) {
-      pending->opaque_surface += reweigh(photon, 0.0f, p->unit);
-      return false;
-    }
-    const float eta_from = fast_length(ray->v);
-    const float eta_to = eta_at(medium, next_region, locate(step.beyond));
-    if (index_matched(medium, region, next_region, eta_from, eta_to)) {
-      ray->x = step.beyond;
-      ray->region = next_region;
       return true;
     }
-    const Interface surface =
-        meet_interface(ray->v / eta_from, surface_normal(medium, step.surface, step.beyond), eta_from, eta_to);
-    if (uniform(draw(&photon->random).x) < surface.reflectance) {
-      ray->v = eta_from * surface.reflected;
-    } else {
-      ray->v = eta_to * surface.refracted;
-      ray->x = step.beyond;
-      ray->region = next_region;
+    const float other = (step.face & 1) ? 0.0f : 1.0f;
+    beyond = ray->x;
+    if (axis == 0) beyond.x = other * TURBID_VOXELS_X;
+    if (axis == 1) beyond.y = other * TURBID_VOXELS_Y;
+    if (axis == 2) beyond.z = other * TURBID_VOXELS_Z;
+    next_region = region_at(medium, locate(beyond));
+    if (next_region == region) {
+      ray->x = beyond;
+      return true;
     }
-    ray->grace = GRACE;
   }
+  if (medium->regions[next_region].opaque) {
+    pending->opaque_surface += reweigh(photon, 0.0f, p->unit);
+    return false;
+  }
+  const float eta_from = length(ray->v);
+  const float eta_to = eta_at(medium, next_region, locate(beyond));
+  if (index_matched(medium, region, next_region, eta_from, eta_to)) {
+    ray->x = beyond;
+    ray->region = next_region;
+    return true;
+  }
+  float3 normal = (float3)(axis == 0, axis == 1, axis == 2);  // bodies that differ across a periodic seam
+  if (step.event == EVENT_SURFACE) normal = surface_normal(medium, step.surface, beyond);
+  const Interface surface = meet_interface(ray->v / eta_from, normal, eta_from, eta_to);
+  if (uniform(draw(&photon->random).x) < surface.reflectance) {
+    ray->v = eta_from * surface.reflected;
+  } else {
+    ray->v = eta_to * surface.refracted;
+    ray->x = beyond;
+    ray->region = next_region;
+  }
+  ray->grace = step.event == EVENT_SURFACE ? GRACE : 0.0f;
   return true;
 }
 

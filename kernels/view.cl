@@ -153,7 +153,7 @@ kernel void view(MEDIUM_ARGUMENTS, ViewParams p, const global ViewSample* sample
                       opaque_radiance(&medium, &around, &p, next_region, branch.ray.x, normal);
           break;
         }
-        const float eta_from = fast_length(branch.ray.v);
+        const float eta_from = length(branch.ray.v);
         const float eta_to = eta_at(&medium, next_region, locate(step.beyond));
         if (index_matched(&medium, region, next_region, eta_from, eta_to)) {
           branch.ray.x = step.beyond;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// turbid check: validates a scene and says what it needs. What it prints is the effective scene, a scene file again, with
-// everything else in comments.
+// turbid check: validates a scene and says what it needs. What it prints is the effective scene, a scene file again,
+// with everything else in comments.
 #include <memory>
 
 #include "host/app/command.h"
@@ -21,7 +21,8 @@ void look_at_device(const SceneOptions& options, SceneReport& report) {
     report.warnings.push_back(error.what());
     return;
   }
-  const double bytes = static_cast<double>(report.survey.memory_bytes), offered = static_cast<double>(report.device->device.global_memory);
+  const double bytes = static_cast<double>(report.survey.memory_bytes),
+               offered = static_cast<double>(report.device->device.global_memory);
   if (bytes > offered)
     report.warnings.push_back("needs about " + megabytes(report.survey.memory_bytes) + ", more than the " +
                               megabytes(report.device->device.global_memory) + " of " + report.device->device.label() +

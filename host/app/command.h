@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sub-commands. Each add_... declares its flags on the program; the one that the user chose leaves its work in `work`,
-// which main runs where errors are caught.
+// The sub-commands. Each add_... declares its flags on the program; the one that the user chose leaves its work in
+// `work`, which main runs where errors are caught.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <functional>

@@ -34,8 +34,8 @@ void require_command(const CLI::App& program, int argc, const char* const* argv)
     if (command->get_name() == first) return;
     names += (names.empty() ? "" : ", ") + command->get_name();
   }
-  throw InputError((first.empty() ? std::string("no command given") : first + ": no such command") + "; there are " + names +
-                   ": see turbid --help");
+  throw InputError((first.empty() ? std::string("no command given") : first + ": no such command") + "; there are " +
+                   names + ": see turbid --help");
 }
 
 /// False if there is nothing more to do (--help and its like).

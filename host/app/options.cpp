@@ -34,8 +34,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
 }
 
 void add_device_option(CLI::App& command, std::string& device) {
-  command
-      .add_option("--device", device, "OpenCL device: its number P:D in `turbid devices`, or part of its name")
+  command.add_option("--device", device, "OpenCL device: its number P:D in `turbid devices`, or part of its name")
       ->type_name("DEVICE");
 }
 
@@ -57,8 +56,12 @@ void remember_command_line(int argc, const char* const* argv) {
   }
 }
 
-const std::string& command_line() { return the_command_line; }
+const std::string& command_line() {
+  return the_command_line;
+}
 
-void print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+void print(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stdout);
+}
 
 }  // namespace turbid::app

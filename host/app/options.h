@@ -12,9 +12,7 @@ namespace turbid::app {
 /// What a command prints, and how much of it.
 struct TalkOptions {
   bool verbose = false, quiet = false, json = false;
-  Verbosity verbosity() const {
-    return verbose ? Verbosity::verbose : quiet ? Verbosity::quiet : Verbosity::normal;
-  }
+  Verbosity verbosity() const { return verbose ? Verbosity::verbose : quiet ? Verbosity::quiet : Verbosity::normal; }
 };
 
 /// Which scene, what is changed in it, and where it is computed.

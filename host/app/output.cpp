@@ -15,11 +15,14 @@ namespace fs = std::filesystem;
 
 std::string extension_of(const fs::path& path) {
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   return extension;
 }
 
-fs::path default_folder(const std::string& scene_path) { return fs::path("out") / fs::path(scene_path).stem(); }
+fs::path default_folder(const std::string& scene_path) {
+  return fs::path("out") / fs::path(scene_path).stem();
+}
 
 /// Writes and removes a small file: what access rights, read-only and full file systems say only then.
 void try_folder(const fs::path& folder) {
@@ -42,7 +45,9 @@ void require_no_folder(const fs::path& file) {
   if (fs::is_directory(file, ignored)) throw InputError("-o: " + file.string() + " is a folder, expected a file");
 }
 
-fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
 
 }  // namespace
 
@@ -81,10 +86,12 @@ RenderOutput render_output(const std::string& wanted, const std::string& scene_p
     output.png = fs::path(given).replace_extension(".png").string();
     output.report = fs::path(given).replace_extension(".report.json").string();
   } else {
-    static const std::vector<std::string> files{".png", ".jpg", ".jpeg", ".tif", ".tiff", ".hdr", ".vdb", ".json", ".toml"};
+    static const std::vector<std::string> files{".png", ".jpg", ".jpeg", ".tif", ".tiff",
+                                                ".hdr", ".vdb", ".json", ".toml"};
     const std::string extension = extension_of(given);
     if (std::find(files.begin(), files.end(), extension) != files.end() && !fs::is_directory(given, ignored))
-      throw InputError("-o " + wanted + ": expected a folder, or a file that ends in .exr (the .png is written beside it)");
+      throw InputError("-o " + wanted +
+                       ": expected a folder, or a file that ends in .exr (the .png is written beside it)");
     output.folder = given;
     output.exr = (given / (name + ".exr")).string();
     output.png = (given / (name + ".png")).string();

@@ -25,8 +25,8 @@ struct RenderOutput {
   std::filesystem::path folder;
 };
 
-/// `wanted`: a folder, or a file that ends in .exr, or empty: out/<scene name>. Throws InputError if the files couldn't be
-/// written there; leaves nothing behind.
+/// `wanted`: a folder, or a file that ends in .exr, or empty: out/<scene name>. Throws InputError if the files couldn't
+/// be written there; leaves nothing behind.
 RenderOutput render_output(const std::string& wanted, const std::string& scene_path);
 
 /// `wanted`: a file that ends in .vdb, or empty: out/<scene name>/<fallback>. Checked likewise.

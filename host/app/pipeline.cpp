@@ -39,8 +39,8 @@ void require_balance(const EnergyBalance& energy) {
   const double imbalance = energy.imbalance();
   if (imbalance <= kAllowedImbalance) return;
   char text[160];
-  std::snprintf(text, sizeof text, "the energy balance is off by %.2g of what was emitted, more than the %.0e allowed", imbalance,
-                kAllowedImbalance);
+  std::snprintf(text, sizeof text, "the energy balance is off by %.2g of what was emitted, more than the %.0e allowed",
+                imbalance, kAllowedImbalance);
   throw VerificationError(text);
 }
 

@@ -23,9 +23,9 @@ struct RenderOptions : SceneOptions {
 ImageMetadata metadata_of(const VoxelisedScene& in, const cl::DeviceInfo& device, const SolverReport& solver,
                           const Progress& progress) {
   ImageMetadata metadata;
-  metadata.text = {{"turbid:version", TURBID_VERSION},      {"turbid:scene", in.scene.name},
-                   {"turbid:scene_hash", in.scene.hash},    {"turbid:unit", in.scene.unit},
-                   {"turbid:device", device.label()},       {"turbid:driver", device.driver},
+  metadata.text = {{"turbid:version", TURBID_VERSION},   {"turbid:scene", in.scene.name},
+                   {"turbid:scene_hash", in.scene.hash}, {"turbid:unit", in.scene.unit},
+                   {"turbid:device", device.label()},    {"turbid:driver", device.driver},
                    {"turbid:solver", solver.solver}};
   metadata.numbers = {{"turbid:voxel_size", in.scene.medium.frame.voxel_size},
                       {"turbid:error_estimate", static_cast<float>(solver.error_estimate)},

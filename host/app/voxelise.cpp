@@ -25,7 +25,8 @@ void run(const VoxeliseOptions& options) {
   in.medium.write_vdb(output.string(), in.scene.unit);
   progress.finish();
   const SceneReport report{in.scene, in.features, in.survey, progress.warnings(), output.string()};
-  print(options.json ? scene_json(report) : "medium     " + output.string() + "\n" + (options.quiet ? "" : grid_text(report)));
+  print(options.json ? scene_json(report)
+                     : "medium     " + output.string() + "\n" + (options.quiet ? "" : grid_text(report)));
 }
 
 }  // namespace
@@ -34,7 +35,8 @@ void add_voxelise(CLI::App& program, Work& work) {
   const auto options = std::make_shared<VoxeliseOptions>();
   CLI::App& command = *program.add_subcommand("voxelise", "Turn a scene's meshes and materials into OpenVDB grids");
   add_scene_options(command, *options);
-  command.add_option("-o,--output", options->output, "File for the grids (default: out/NAME/medium.vdb)")->type_name("FILE.vdb");
+  command.add_option("-o,--output", options->output, "File for the grids (default: out/NAME/medium.vdb)")
+      ->type_name("FILE.vdb");
   command.footer("Example:\n  turbid voxelise scenes/bunny.toml -o bunny-medium.vdb --resolution 64");
   command.callback([options, &work] { work = [options] { run(*options); }; });
 }

@@ -22,8 +22,12 @@ std::string devices_text(const std::vector<cl::DeviceInfo>& devices, const std::
     const std::string why = d.why_unusable();
     text += d.label() + (chosen(d, choice) ? "  <- would be used: " + choice->reason : "") + "\n";
     text += "    " + d.platform_name + ", " + d.version + ", driver " + d.driver + "\n";
-    text += "    " + std::string(d.gpu ? "GPU" : d.cpu ? "CPU" : "other") + ", " + std::to_string(d.compute_units) +
-            " compute units, " + megabytes(d.global_memory) + ", at most " + megabytes(d.max_allocation) + " at once\n";
+    text += "    " +
+            std::string(d.gpu   ? "GPU"
+                        : d.cpu ? "CPU"
+                                : "other") +
+            ", " + std::to_string(d.compute_units) + " compute units, " + megabytes(d.global_memory) + ", at most " +
+            megabytes(d.max_allocation) + " at once\n";
     if (!why.empty()) text += "    can't be used: it " + why + "\n";
   }
   return text;

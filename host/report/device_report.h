@@ -10,7 +10,8 @@
 namespace turbid {
 
 /// `problem`: why none was chosen.
-std::string devices_json(const std::vector<cl::DeviceInfo>&, const std::optional<cl::DeviceChoice>&, const std::string& problem);
+std::string devices_json(const std::vector<cl::DeviceInfo>&, const std::optional<cl::DeviceChoice>&,
+                         const std::string& problem);
 std::string devices_text(const std::vector<cl::DeviceInfo>&, const std::optional<cl::DeviceChoice>&);
 
 }  // namespace turbid

@@ -16,19 +16,27 @@ double decimal(float value) {
   return number;
 }
 
-Json vector(glm::vec3 v) { return Json::array({decimal(v.x), decimal(v.y), decimal(v.z)}); }
+Json vector(glm::vec3 v) {
+  return Json::array({decimal(v.x), decimal(v.y), decimal(v.z)});
+}
 
 }  // namespace
 
-Json colours(glm::dvec3 v) { return Json::array({v.x, v.y, v.z}); }
+Json colours(glm::dvec3 v) {
+  return Json::array({v.x, v.y, v.z});
+}
 
 Json scene_part(const Scene& scene) {
-  return {{"file", scene.path}, {"name", scene.name}, {"hash", scene.hash}, {"unit", scene.unit}, {"effective", scene.effective_toml}};
+  return {{"file", scene.path},
+          {"name", scene.name},
+          {"hash", scene.hash},
+          {"unit", scene.unit},
+          {"effective", scene.effective_toml}};
 }
 
 Json features_part(const SceneFeatures& f) {
-  return {{"bodies", f.bodies},         {"graded_index", f.graded_index},   {"interfaces", f.interfaces},
-          {"scattering", f.scattering}, {"absorption", f.absorption},       {"heterogeneous", f.heterogeneous},
+  return {{"bodies", f.bodies},           {"graded_index", f.graded_index}, {"interfaces", f.interfaces},
+          {"scattering", f.scattering},   {"absorption", f.absorption},     {"heterogeneous", f.heterogeneous},
           {"anisotropic", f.anisotropic}, {"emission", f.emission},         {"channels", f.channels},
           {"tint", vector(f.tint)}};
 }
@@ -58,12 +66,16 @@ Json device_part(const cl::DeviceInfo& d) {
           {"vendor", d.vendor},
           {"driver", d.driver},
           {"version", d.version},
-          {"type", d.gpu ? "gpu" : d.cpu ? "cpu" : "other"},
+          {"type", d.gpu   ? "gpu"
+                   : d.cpu ? "cpu"
+                           : "other"},
           {"compute_units", d.compute_units},
           {"memory_bytes", d.global_memory},
           {"largest_buffer_bytes", d.max_allocation}};
 }
 
-std::string document(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+std::string document(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 }  // namespace turbid

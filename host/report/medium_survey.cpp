@@ -56,7 +56,9 @@ struct Part {
   std::vector<float> index_step;  ///< per region
 };
 
-glm::ivec3 voxel_at(int i) { return {i % kBlockEdge, i / kBlockEdge % kBlockEdge, i / (kBlockEdge * kBlockEdge)}; }
+glm::ivec3 voxel_at(int i) {
+  return {i % kBlockEdge, i / kBlockEdge % kBlockEdge, i / (kBlockEdge * kBlockEdge)};
+}
 
 class BlockSurvey {
  public:
@@ -88,7 +90,8 @@ class BlockSurvey {
     for (int i = 0; i < kVoxels; ++i) {
       if (owner_[i] != r) continue;
       ++part_.active_voxels;
-      const glm::vec3 sigma_t = region.heterogeneous ? values_[i].sigma_s + values_[i].sigma_a : region.sigma_s + region.sigma_a;
+      const glm::vec3 sigma_t =
+          region.heterogeneous ? values_[i].sigma_s + values_[i].sigma_a : region.sigma_s + region.sigma_a;
       for (int c = 0; c < 3; ++c) part_.thickness.add(h * sigma_t[c]);
     }
   }
@@ -106,7 +109,8 @@ class BlockSurvey {
         glm::ivec3 next = voxel;
         ++next[axis];
         // The field of a sharp body ends at its surface: what lies beyond in the next block is looked at from there.
-        if (!blurred && (next[axis] == kBlockEdge || owner_[next.x + kBlockEdge * (next.y + kBlockEdge * next.z)] != r)) continue;
+        if (!blurred && (next[axis] == kBlockEdge || owner_[next.x + kBlockEdge * (next.y + kBlockEdge * next.z)] != r))
+          continue;
         largest = std::max(largest, std::fabs(at(next) - at(voxel)));
       }
     }
@@ -138,7 +142,8 @@ MediumSurvey survey_medium(const MediumVolume& medium) {
     all.active_blocks += part.active_blocks;
     all.active_voxels += part.active_voxels;
     all.thickness.add(part.thickness);
-    for (std::size_t r = 0; r < part.index_step.size(); ++r) all.index_step[r] = std::max(all.index_step[r], part.index_step[r]);
+    for (std::size_t r = 0; r < part.index_step.size(); ++r)
+      all.index_step[r] = std::max(all.index_step[r], part.index_step[r]);
   });
   survey.active_blocks = all.active_blocks;
   survey.active_voxels = all.active_voxels;
@@ -152,8 +157,8 @@ MediumSurvey survey_medium(const MediumVolume& medium) {
     survey.index_step = all.index_step[r];
     survey.index_step_region = medium.region(static_cast<int>(r)).name;
   }
-  // Measured with three colours and the steady solver on a CPU device, where both sides count: libraries and the kernels'
-  // compiler, the domain's grids, the active blocks.
+  // Measured with three colours and the steady solver on a CPU device, where both sides count: libraries and the
+  // kernels' compiler, the domain's grids, the active blocks.
   survey.memory_bytes = 320'000'000ull + 40ull * survey.voxels + 325ull * 512ull * survey.active_blocks;
   return survey;
 }

@@ -75,7 +75,10 @@ std::string report_json(const RunReport& r) {
   json["device"]["chosen_because"] = r.device.reason;
   if (r.exposure) {
     const Camera& camera = r.scene.camera;
-    json["picture"] = {{"width", camera.width}, {"height", camera.height}, {"samples", camera.samples}, {"exposure_stops", *r.exposure}};
+    json["picture"] = {{"width", camera.width},
+                       {"height", camera.height},
+                       {"samples", camera.samples},
+                       {"exposure_stops", *r.exposure}};
   }
   json["seconds"] = seconds_part(r.times);
   json["peak_memory_bytes"] = peak_memory();

@@ -25,12 +25,12 @@ struct RunReport {
   const MediumSurvey& survey;
   const cl::DeviceChoice& device;
   const SolverReport& solver;
-  double allowed_imbalance = 0;         ///< above it the run counts as failed [-]
+  double allowed_imbalance = 0;  ///< above it the run counts as failed [-]
   const std::vector<StageTime>& times;
   const std::vector<std::string>& warnings;
-  NamedTexts outputs;                   ///< files written
-  NamedTexts checksums;                 ///< of the results' bits
-  std::optional<float> exposure;        ///< of the preview [stops]; render only
+  NamedTexts outputs;             ///< files written
+  NamedTexts checksums;           ///< of the results' bits
+  std::optional<float> exposure;  ///< of the preview [stops]; render only
 };
 
 std::string report_json(const RunReport&);

@@ -48,8 +48,8 @@ std::string report_text(const RunReport& r, bool brief) {
   const SolverReport& s = r.solver;
   const GridFrame& frame = r.scene.medium.frame;
   text += "device     " + r.device.device.label() + "\n";
-  text += line("grid       %d x %d x %d voxels of %g %s, %s of them scatter\n", frame.voxels.x, frame.voxels.y, frame.voxels.z,
-               frame.voxel_size, r.scene.unit.c_str(), with_commas(r.survey.active_voxels).c_str());
+  text += line("grid       %d x %d x %d voxels of %g %s, %s of them scatter\n", frame.voxels.x, frame.voxels.y,
+               frame.voxels.z, frame.voxel_size, r.scene.unit.c_str(), with_commas(r.survey.active_voxels).c_str());
   text += line("solver     %s: %s rays in %d batches, %d iterations, estimated error %.2g\n", s.solver.c_str(),
                with_commas(s.rays).c_str(), s.march_batches, s.iterations, s.error_estimate);
   text += "times     ";

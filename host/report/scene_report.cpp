@@ -25,19 +25,23 @@ std::string commented(const std::string& text) {
 
 }  // namespace
 
-std::string megabytes(std::uint64_t bytes) { return line("%.0f MB", static_cast<double>(bytes) / 1e6); }
+std::string megabytes(std::uint64_t bytes) {
+  return line("%.0f MB", static_cast<double>(bytes) / 1e6);
+}
 
 std::string grid_text(const SceneReport& r) {
   const GridFrame& frame = r.scene.medium.frame;
   const MediumSurvey& s = r.survey;
-  std::string text = line("voxels: %d x %d x %d of %g %s, %.2f million in all\n", frame.voxels.x, frame.voxels.y, frame.voxels.z,
-                          frame.voxel_size, r.scene.unit.c_str(), static_cast<double>(s.voxels) / 1e6);
+  std::string text = line("voxels: %d x %d x %d of %g %s, %.2f million in all\n", frame.voxels.x, frame.voxels.y,
+                          frame.voxels.z, frame.voxel_size, r.scene.unit.c_str(), static_cast<double>(s.voxels) / 1e6);
   text += line("active blocks: %zu of %zu, with %.2f million scattering voxels\n", s.active_blocks, s.blocks,
                static_cast<double>(s.active_voxels) / 1e6);
   if (s.active_voxels > 0)
-    text += line("optical thickness per voxel: min %.3g, median %.3g, max %.3g\n", s.thickness_min, s.thickness_median, s.thickness_max);
+    text += line("optical thickness per voxel: min %.3g, median %.3g, max %.3g\n", s.thickness_min, s.thickness_median,
+                 s.thickness_max);
   if (s.index_step > 0)
-    text += line("largest step of the index between voxels: %.3g, in \"%s\"\n", s.index_step, s.index_step_region.c_str());
+    text +=
+        line("largest step of the index between voxels: %.3g, in \"%s\"\n", s.index_step, s.index_step_region.c_str());
   return text + "memory: about " + megabytes(s.memory_bytes) + "\n";
 }
 
@@ -50,7 +54,8 @@ std::string scene_text(const SceneReport& r) {
   if (r.device) notes += "device\n  " + r.device->device.label() + ": " + r.device->reason + "\n";
   notes += r.warnings.empty() ? "no warnings\n" : "warnings\n";
   for (const std::string& sentence : r.warnings) notes += "  " + sentence + "\n";
-  return "# " + r.scene.path + " with all defaults, scene hash " + r.scene.hash + "\n" + r.scene.effective_toml + "\n" + commented(notes);
+  return "# " + r.scene.path + " with all defaults, scene hash " + r.scene.hash + "\n" + r.scene.effective_toml + "\n" +
+         commented(notes);
 }
 
 std::string scene_json(const SceneReport& r) {

@@ -17,7 +17,7 @@ struct SceneReport {
   const SceneFeatures& features;
   const MediumSurvey& survey;
   std::vector<std::string> warnings;
-  std::string output;                          ///< file written; empty: none
+  std::string output;  ///< file written; empty: none
   std::optional<cl::DeviceChoice> device = {};
 };
 

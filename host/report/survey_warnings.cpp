@@ -9,9 +9,9 @@
 namespace turbid {
 namespace {
 
-constexpr float kThickVoxel = 5.0f;   // sigma_t h: beyond it light changes within a voxel by more than a factor of 100
-constexpr float kIndexStep = 0.1f;    // |difference of eta| between neighbours: beyond it a ray's bend is not resolved
-constexpr float kThinObject = 3.0f;   // voxels across: below it no voxel may lie wholly inside
+constexpr float kThickVoxel = 5.0f;  // sigma_t h: beyond it light changes within a voxel by more than a factor of 100
+constexpr float kIndexStep = 0.1f;   // |difference of eta| between neighbours: beyond it a ray's bend is not resolved
+constexpr float kThinObject = 3.0f;  // voxels across: below it no voxel may lie wholly inside
 
 std::string text(const char* format, auto... values) {
   char line[512];
@@ -34,8 +34,8 @@ bool is_void(const Region& region) {
   return !region.opaque && !region.participates() && !region.absorbs && !region.graded_index && region.eta == 1.0f;
 }
 
-void warn_of_place(std::vector<std::string>& warnings, const MediumVolume& medium, const std::string& who, glm::vec3 point,
-                   const std::string& consequence) {
+void warn_of_place(std::vector<std::string>& warnings, const MediumVolume& medium, const std::string& who,
+                   glm::vec3 point, const std::string& consequence) {
   const int owner = owner_at(medium, point);
   if (owner < 0 || is_void(medium.region(owner))) return;
   const Region& region = medium.region(owner);
@@ -51,23 +51,28 @@ std::vector<std::string> survey_warnings(const Scene& scene, const MediumVolume&
   const GridFrame& frame = medium.frame();
   const double resolution = std::max({frame.voxels.x, frame.voxels.y, frame.voxels.z});
   if (survey.thickness_max > kThickVoxel)
-    warnings.push_back(text("voxels are optically too thick: sigma_t * voxel size reaches %.3g, more than %g; a resolution of %.0f or "
-                            "more would resolve it",
-                            survey.thickness_max, kThickVoxel, std::ceil(resolution * survey.thickness_max / kThickVoxel)));
+    warnings.push_back(
+        text("voxels are optically too thick: sigma_t * voxel size reaches %.3g, more than %g; a resolution of %.0f or "
+             "more would resolve it",
+             survey.thickness_max, kThickVoxel, std::ceil(resolution * survey.thickness_max / kThickVoxel)));
   if (survey.index_step > kIndexStep)
-    warnings.push_back(text("the refractive index of \"%s\" changes by %.3g from one voxel to the next, more than %g: rays may bend "
-                            "wrongly there; raise the resolution or the smoothing",
-                            survey.index_step_region.c_str(), survey.index_step, kIndexStep));
+    warnings.push_back(
+        text("the refractive index of \"%s\" changes by %.3g from one voxel to the next, more than %g: rays may bend "
+             "wrongly there; raise the resolution or the smoothing",
+             survey.index_step_region.c_str(), survey.index_step, kIndexStep));
   for (const Light& light : scene.lights)
     if (light.kind != LightKind::directional)
-      warn_of_place(warnings, medium, light.name, light.position, ": its rays start there, evenly in all directions it shines to");
-  if (scene.has_camera) warn_of_place(warnings, medium, "the camera", scene.camera.position, ": it sees only what lies inside");
+      warn_of_place(warnings, medium, light.name, light.position,
+                    ": its rays start there, evenly in all directions it shines to");
+  if (scene.has_camera)
+    warn_of_place(warnings, medium, "the camera", scene.camera.position, ": it sees only what lies inside");
   for (const Body& body : scene.medium.bodies) {
     const glm::vec3 size = bounds(body.solid.mesh).size() / frame.voxel_size;
     const float thinnest = std::min({size.x, size.y, size.z});
     if (thinnest < kThinObject)
       warnings.push_back(text("object \"%s\" is only %.2g voxels thick; a resolution of %.0f or more would resolve it",
-                              body.name.c_str(), thinnest, std::ceil(resolution * kThinObject / std::max(thinnest, 1e-3f))));
+                              body.name.c_str(), thinnest,
+                              std::ceil(resolution * kThinObject / std::max(thinnest, 1e-3f))));
   }
   const int thinnest_side = std::min({frame.voxels.x, frame.voxels.y, frame.voxels.z});
   if (scene.medium.bodies.empty() && thinnest_side <= kBlockEdge)

@@ -143,4 +143,9 @@ std::vector<std::string> SceneFeatures::describe() const {
   return lines;
 }
 
+int SceneFeatures::first_colour() const {
+  if (channels == 3) return 0;
+  return tint.r >= tint.g && tint.r >= tint.b ? 0 : tint.g >= tint.b ? 1 : 2;
+}
+
 }  // namespace turbid

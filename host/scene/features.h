@@ -21,6 +21,13 @@ struct SceneFeatures {
   int channels = 3;            ///< 1 when all coefficients are grey and all lights have one colour ratio, else 3
   glm::vec3 tint{1};           ///< colour of that one channel; (1, 1, 1) with 3 channels
 
+  /// The colour that a grey scene's one channel is computed for: the brightest of the tint, whose value there is 1.
+  int first_colour() const;
+  /// A power of the lights or of emission in the channels computed.
+  glm::vec3 to_channels(glm::vec3 rgb) const {
+    return channels == 3 ? rgb : glm::vec3(rgb[first_colour()] / tint[first_colour()], 0, 0);
+  }
+
   /// One line each, for `turbid check`.
   std::vector<std::string> describe() const;
 };

@@ -102,7 +102,7 @@ Scene read_scene(const std::string& path, const SceneOverrides& overrides) {
   apply_overrides(root, overrides);
 
   Reading reading;
-  reading.folder = std::filesystem::path(path).parent_path();
+  reading.folder = std::filesystem::absolute(path).parent_path();
   Scene& scene = reading.scene;
   scene.path = path;
   scene.name = std::filesystem::path(path).stem().string();

@@ -23,7 +23,8 @@ constexpr int kStep[3] = {1, kEdge, kEdge * kEdge};
 bool joined(const Region& a, const Region& b) { return a.smooth_surface && b.smooth_surface; }
 
 /// Fills the voxels of one block.
-void fill_block(DiffusionMedium& out, const MediumVolume& medium, int block, float floor_s) {
+void fill_block(DiffusionMedium& out, const MediumVolume& medium, int block, const std::vector<float>& floors,
+                int first_colour) {
   const glm::ivec3 lower = kEdge * out.blocks.coordinates(block);
   const float h = out.frame.voxel_size;
   std::vector<int> owner(kVoxels);
@@ -34,7 +35,7 @@ void fill_block(DiffusionMedium& out, const MediumVolume& medium, int block, flo
     const int r = owner[v];
     const std::size_t at = block * std::size_t{kVoxels} + v;
     out.eta_squared[at] = 1.0f;
-    if (r < 0 || !medium.region(r).participates()) continue;
+    if (r < 0 || floors[r] < 0.0f) continue;
     const Region& region = medium.region(r);
     out.region[at] = static_cast<std::int16_t>(r);
     Coefficients k{region.sigma_s, region.sigma_a, region.emission, region.g};
@@ -58,10 +59,11 @@ void fill_block(DiffusionMedium& out, const MediumVolume& medium, int block, flo
     out.eta_squared[at] = index * index;
     for (int c = 0; c < out.channels; ++c) {
       const std::size_t i = out.index(c, block, v);
+      const int colour = first_colour + c;
       // Similarity: what delta-Eddington leaves has g* = g / (1 + g); its transport coefficient is sigma_a + (1 - g) sigma_s.
-      out.s[i] = std::max(h * (k.sigma_a[c] + (1.0f - k.g) * k.sigma_s[c]), floor_s);
-      out.s_a[i] = h * k.sigma_a[c];
-      out.emission[i] = k.emission[c] * h * h * h;
+      out.s[i] = std::max(h * (k.sigma_a[colour] + (1.0f - k.g) * k.sigma_s[colour]), floors[r]);
+      out.s_a[i] = h * k.sigma_a[colour];
+      out.emission[i] = k.emission[colour] * h * h * h;
     }
   }
 }
@@ -139,6 +141,14 @@ struct BlockFaces {
   std::vector<JumpFace> jumps;
 };
 
+/// Owner of the voxel that a periodic domain has at coordinates one beyond a face.
+int owner_across_seam(const MediumVolume& medium, glm::ivec3 voxel) {
+  const glm::ivec3 n = medium.frame().voxels;
+  std::array<int, 1> owner{};
+  medium.read_owner((voxel + n) % n, glm::ivec3(1), owner);
+  return owner[0];
+}
+
 /// Index of a region at one voxel. Rounded so that a graded index asks for few different Fresnel integrals.
 float rounded_eta(float eta) { return std::round(eta * 512.0f) / 512.0f; }
 
@@ -158,33 +168,38 @@ BlockFaces faces_of_block(const DiffusionMedium& out, const MediumVolume& medium
       const int axis = face / 2, sign = face % 2 ? 1 : -1;
       glm::ivec3 local = voxel;
       local[axis] += sign;
-      const int other_owner = owner[(local.x + 1) + 10 * ((local.y + 1) + 10 * (local.z + 1))];
+      int other_owner = owner[(local.x + 1) + 10 * ((local.y + 1) + 10 * (local.z + 1))];
+      const bool at_domain_face = other_owner < 0;
+      if (at_domain_face && medium.faces()[face] == FaceBoundary::periodic) {
+        other_owner = owner_across_seam(medium, lower + local);
+      }
       const VoxelRef other = neighbour_over(out.blocks, block, v, face);
       const int r2 = other.block >= 0 ? out.region[other.block * std::size_t{kVoxels} + other.voxel] : -1;
-      const bool at_domain_face = other_owner < 0;
       Cut cut;
       if (r2 >= 0) {
-        if (sign < 0 || r2 == r || at_domain_face || joined(region, medium.region(r2))) continue;
+        if (sign < 0 || r2 == r || joined(region, medium.region(r2))) continue;
         const float eta_there = rounded_eta(std::sqrt(out.eta_squared[other.block * std::size_t{kVoxels} + other.voxel]));
         if (eta_here == eta_there) continue;
-        cut = cut_by(distances, std::max(r, r2), voxel, axis, sign);
+        if (!at_domain_face) cut = cut_by(distances, std::max(r, r2), voxel, axis, sign);
         result.jumps.push_back({block, static_cast<std::int16_t>(v), static_cast<std::int8_t>(axis),
                                 static_cast<float>(moments.resistance(eta_here, eta_there) / cut.normal)});
         continue;
       }
       double a = 1.0;
-      if (at_domain_face) {
+      bool boundary_is_opaque = false;
+      if (other_owner < 0) {
         if (medium.faces()[face] != FaceBoundary::open) continue;  // mirror: nothing crosses
       } else {
-        cut = cut_by(distances, std::max(r, other_owner), voxel, axis, sign);
+        if (!at_domain_face) cut = cut_by(distances, std::max(r, other_owner), voxel, axis, sign);
         const Region& beyond = medium.region(other_owner);
+        boundary_is_opaque = beyond.opaque;
         if (!beyond.opaque) {
           // A blurred surface refracts as much as a sharp one in the end: from the body's own index to the ambient's.
           const float inside = joined(region, beyond) ? rounded_eta(region.eta) : eta_here;
           a = moments.extrapolation(inside, rounded_eta(beyond.eta));
         }
       }
-      BoundaryFace boundary{block, static_cast<std::int16_t>(v), static_cast<std::int8_t>(face), {}};
+      BoundaryFace boundary{block, static_cast<std::int16_t>(v), static_cast<std::int8_t>(face), boundary_is_opaque, {}};
       for (int c = 0; c < out.channels; ++c) {
         const double value = (2.0 * a / 3.0) / cut.normal + out.s[out.index(c, block, v)] * (cut.distance - 0.5);
         boundary.c[c] = static_cast<float>(std::max(value, 0.02));
@@ -197,7 +212,52 @@ BlockFaces faces_of_block(const DiffusionMedium& out, const MediumVolume& medium
 
 }  // namespace
 
-BlockGrid active_blocks(const MediumVolume& medium) {
+std::vector<float> floors_of_s(const MediumVolume& medium) {
+  // Voxels that hardly scatter: light crosses the domain there in one flight, so the diffusion coefficient is held at that of one
+  // mean free path per domain (numerics section 4).
+  const glm::ivec3 n = medium.frame().voxels;
+  const float floor_s = 1.0f / static_cast<float>(std::max({n.x, n.y, n.z}));
+  std::vector<float> floors(medium.region_count(), -1.0f);
+  bool any_clear = false;
+  for (int r = 0; r < medium.region_count(); ++r) {
+    if (medium.region(r).participates()) floors[r] = floor_s;
+    else any_clear |= r > 0 && !medium.region(r).opaque;
+  }
+  if (!any_clear) return floors;
+  // Clear bodies that touch nothing but scattering regions: found by what each voxel's upper neighbours are.
+  std::vector<char> open(floors.size(), 0);
+  std::vector<glm::ivec3> low(floors.size(), n), high(floors.size(), glm::ivec3(-1));
+  open[0] = 1;
+  std::vector<int> rows(static_cast<std::size_t>(n.x + 1) * 4);
+  for (int z = -1; z < n.z; ++z) {
+    for (int y = -1; y < n.y; ++y) {
+      medium.read_owner({-1, y, z}, {n.x + 1, 2, 2}, rows);
+      const int width = n.x + 1;
+      for (int x = 0; x < width; ++x) {
+        const int here = rows[x];
+        const int upper[3] = {x + 1 < width ? rows[x + 1] : -1, rows[x + width], rows[x + 2 * width]};
+        if (here > 0) {
+          low[here] = glm::min(low[here], glm::ivec3(x - 1, y, z));
+          high[here] = glm::max(high[here], glm::ivec3(x - 1, y, z));
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+          if (here == upper[axis]) continue;
+          for (const auto& [a, b] : {std::pair(here, upper[axis]), std::pair(upper[axis], here)}) {
+            if (a >= 0 && (b < 0 || floors[b] < 0.0f)) open[a] = 1;
+          }
+        }
+      }
+    }
+  }
+  for (int r = 1; r < medium.region_count(); ++r) {
+    if (floors[r] >= 0.0f || medium.region(r).opaque || open[r] || high[r].x < 0) continue;
+    const glm::ivec3 extent = high[r] - low[r] + 1;
+    floors[r] = std::max(0.1f, 1.0f / static_cast<float>(std::max({extent.x, extent.y, extent.z})));
+  }
+  return floors;
+}
+
+BlockGrid active_blocks(const MediumVolume& medium, const std::vector<float>& floors) {
   const glm::ivec3 blocks = medium.frame().blocks();
   std::vector<char> active(blocks.x * blocks.y * blocks.z, 0);
   parallel_ranges(static_cast<int>(active.size()), [&](int begin, int end) {
@@ -206,7 +266,7 @@ BlockGrid active_blocks(const MediumVolume& medium) {
       const glm::ivec3 at(i % blocks.x, (i / blocks.x) % blocks.y, i / (blocks.x * blocks.y));
       medium.read_owner(kEdge * at, glm::ivec3(kEdge), owner);
       active[i] = std::any_of(owner.begin(), owner.end(),
-                              [&](int r) { return r >= 0 && medium.region(r).participates(); });
+                              [&](int r) { return r >= 0 && floors[r] >= 0.0f; });
     }
   });
   const auto& faces = medium.faces();
@@ -228,20 +288,17 @@ VoxelRef neighbour_over(const BlockGrid& blocks, int block, int voxel, int face)
   return {other, face % 2 ? voxel - (kEdge - 1) * step : voxel + (kEdge - 1) * step};
 }
 
-DiffusionMedium make_diffusion_medium(const MediumVolume& medium, int channels) {
-  DiffusionMedium out(medium.frame(), active_blocks(medium), channels);
+DiffusionMedium make_diffusion_medium(const MediumVolume& medium, int channels, int first_colour) {
+  const std::vector<float> floors = floors_of_s(medium);
+  DiffusionMedium out(medium.frame(), active_blocks(medium, floors), channels);
   const std::size_t stride = out.stride();
   out.region.assign(stride, -1);
   out.eta_squared.assign(stride, 1.0f);
   out.s.assign(stride * channels, 0.0f);
   out.s_a.assign(stride * channels, 0.0f);
   out.emission.assign(stride * channels, 0.0f);
-  // Voids: diffusion has no meaning in voxels that hardly scatter; light crosses the domain there in one flight, so the
-  // diffusion coefficient is held at that of one mean free path per domain (numerics section 4).
-  const glm::ivec3 n = out.frame.voxels;
-  const float floor_s = 1.0f / static_cast<float>(std::max({n.x, n.y, n.z}));
   parallel_ranges(out.blocks.count(), [&](int begin, int end) {
-    for (int block = begin; block < end; ++block) fill_block(out, medium, block, floor_s);
+    for (int block = begin; block < end; ++block) fill_block(out, medium, block, floors, first_colour);
   });
   std::vector<BlockFaces> faces(out.blocks.count());
   MomentCache moments;

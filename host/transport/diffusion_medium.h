@@ -22,6 +22,7 @@ struct BoundaryFace {
   std::int32_t block;
   std::int16_t voxel;    ///< within the block, x fastest
   std::int8_t face;      ///< 0..5: -x, +x, -y, +y, -z, +z
+  bool opaque;           ///< towards an opaque body, which absorbs what comes
   float c[3];            ///< per channel, >= 0.02
 };
 
@@ -59,10 +60,15 @@ struct DiffusionMedium {
 /// Conductances T[channel][axis][block][voxel] between active voxels, 0 elsewhere.
 std::vector<float> face_conductances(const DiffusionMedium&);
 
-/// Blocks that hold a voxel in which diffuse light is solved for.
-BlockGrid active_blocks(const MediumVolume&);
+/// For each region the smallest s per voxel that diffusion is computed with; < 0: the region takes no part.
+std::vector<float> floors_of_s(const MediumVolume&);
+/// Blocks that hold a voxel of a region that takes part.
+BlockGrid active_blocks(const MediumVolume&, const std::vector<float>& floors);
 
-DiffusionMedium make_diffusion_medium(const MediumVolume&, int channels);
+/// With one channel, coefficients and emission are those of `first_colour` (a grey scene's brightest).
+/// A clear region that only scattering regions enclose takes part as a void, with s floored at 0.1 or one mean free path per
+/// crossing, whichever is more (numerics section 4): the light that diffuses into it comes out again.
+DiffusionMedium make_diffusion_medium(const MediumVolume&, int channels, int first_colour = 0);
 
 /// Block and voxel of the neighbour over a face, or block -1.
 struct VoxelRef {

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 constexpr int kSweepsPerTest = 4;
+constexpr double kRounding = 1e-7;
 
 }  // namespace
 
@@ -96,8 +97,9 @@ double Lattice::relax(const std::function<void(double)>& progress) {
   while (sweeps_ < settings_.max_sweeps && blocks_ > 0) {
     enqueue_sweeps(kSweepsPerTest);
     const double change = read_change().relative;
-    if (change == 0.0) {
-      estimate = 0.0;
+    if (change < kRounding) {
+      // As steady as single precision can be: the ratio of successive changes means nothing any more.
+      estimate = change;
       break;
     }
     if (!std::isfinite(change) || change > 1e6) {

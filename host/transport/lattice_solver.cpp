@@ -17,14 +17,14 @@ void LatticeSolver::march_all(March& march) {
     march.enqueue_batch();
     // Transport is linear: what batch i left may relax while batch i + 1 is under way.
     if (march.batches() > 1) lattice_->enqueue_sweeps(context_.settings.lattice.sweeps_per_batch);
-    march.finish_batch();
+    march.finish_batch([&] { context_.progress.update(march_progress(march)); });
     context_.session.lattice_queue().finish();
     if (march.rays_left() > 0) {
       const LightSource so_far =
           gather_source(march.read_deposit(), march.watts_per_unit(), device_medium(), diffusion_medium());
       lattice_->set_source(so_far.power);
     }
-    context_.progress.update(1.0 - static_cast<double>(march.rays_left()) / static_cast<double>(std::max<std::size_t>(first_ray_count_, 1)));
+    context_.progress.update(march_progress(march));
   }
 }
 
@@ -38,6 +38,16 @@ DiffuseLight LatticeSolver::diffuse(const LightSource& source) {
   light.absorbed = energy.absorbed;
   light.escaped = energy.escaped;
   light.stored = energy.stored;
+  // The lattice tells what crosses each boundary face; of it, what went into opaque bodies.
+  const DiffusionMedium& medium = diffusion_medium();
+  for (const BoundaryFace& face : medium.boundary) {
+    if (!face.opaque) continue;
+    for (int c = 0; c < medium.channels; ++c) {
+      const double power = medium.boundary_conductance(face, c) * light.fluence[medium.index(c, face.block, face.voxel)];
+      light.escaped[face.face][c] -= power;
+      light.absorbed_opaque[c] += power;
+    }
+  }
   return light;
 }
 

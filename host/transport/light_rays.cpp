@@ -61,21 +61,29 @@ class RayStarter {
     return owner[0];
   }
 
-  glm::vec3 channels(glm::vec3 rgb) const { return light_channels(device_.features, rgb); }
+  float ambient_eta(glm::vec3 position) const {
+    if (!medium_.region(0).graded_index) return medium_.region(0).eta;
+    std::array<float, 1> eta{};
+    medium_.read_eta(0, glm::ivec3(glm::floor((position - frame_.origin) / frame_.voxel_size)), glm::ivec3(1), eta);
+    return eta[0];
+  }
 
-  void push(glm::vec3 position, glm::vec3 direction, glm::vec3 normal, int region, bool entering, glm::dvec3 power,
+  glm::vec3 channels(glm::vec3 rgb) const { return device_.features.to_channels(rgb); }
+
+  /// `velocity`: direction times the index at the start.
+  void push(glm::vec3 position, glm::vec3 velocity, glm::vec3 normal, int region, bool entering, glm::dvec3 power,
             std::ptrdiff_t texel = -1) {
     RayState ray{};
     const glm::vec3 x = glm::clamp((position - frame_.origin) / frame_.voxel_size, glm::vec3(0), glm::vec3(frame_.voxels));
     for (int i = 0; i < 3; ++i) {
       ray.position[i] = x[i];
-      ray.velocity[i] = direction[i];
+      ray.velocity[i] = velocity[i];
       ray.normal[i] = normal[i];
       ray.power[i] = static_cast<float>(power[i]);
     }
     ray.region = region;
     ray.entering = entering;
-    ray.grace = 1.5f;
+    ray.grace = entering ? 1.5f : 0.0f;  // see kernels/lib/trace.h: the sampled surface is coarser than the rasterised one
     ray.texel = static_cast<int>(texel);
     ray.floor_power = march_.min_power * std::max({ray.power[0], ray.power[1], ray.power[2]});
     if (ray.floor_power == 0.0f && std::max({ray.power[0], ray.power[1], ray.power[2]}) == 0.0f) return;
@@ -97,7 +105,8 @@ class RayStarter {
     if (medium_.region(region).smooth_surface && region > 0) {
       // The index starts to change before the surface: start at least four standard deviations of its blur ahead.
       const float back = (4.0f * medium_.smoothing_voxels() + 2.0f) * frame_.voxel_size;
-      push(inside_domain(hit, direction, back), direction, -direction, 0, false, power);
+      const glm::vec3 start = inside_domain(hit, direction, back);
+      push(start, ambient_eta(start) * direction, -direction, 0, false, power);
       return;
     }
     const std::ptrdiff_t texel = has_map ? static_cast<std::ptrdiff_t>(texels_before_ + i) : -1;
@@ -105,7 +114,7 @@ class RayStarter {
       result_.texel_power.resize(std::max(result_.texel_power.size(), static_cast<std::size_t>(texel) + 1), glm::dvec3(0));
       result_.texel_power[texel] = power;
     }
-    push(hit, direction, image.normal[i], region, region > 0, power, texel);
+    push(hit, ambient_eta(hit) * direction, image.normal[i], region, region > 0, power, texel);
   }
 
   /// hit - back * direction, or where the ray enters the domain if that lies outside.
@@ -249,14 +258,6 @@ class RayStarter {
 };
 
 }  // namespace
-
-glm::vec3 light_channels(const SceneFeatures& features, glm::vec3 rgb) {
-  if (features.channels == 3) return rgb;
-  const int strongest = features.tint.r >= features.tint.g && features.tint.r >= features.tint.b   ? 0
-                        : features.tint.g >= features.tint.b ? 1
-                                                             : 2;
-  return {rgb[strongest] / std::max(features.tint[strongest], 1e-30f), 0.0f, 0.0f};
-}
 
 LightRays start_rays(const LightList& lights, const MediumVolume& medium, const EntrySurfaces& surfaces,
                      const DeviceMedium& device, const MarchSettings& march, std::uint64_t seed) {

@@ -31,10 +31,6 @@ struct EntrySurfaces {
 /// Light comes in through open faces only; a camera looks through all of them (`all_faces`).
 EntrySurfaces entry_surfaces(const MediumDescription&, const MediumVolume&, bool all_faces);
 
-/// A light's colour in the channels of the scene's features: one channel carries the brightest colour, the others follow by
-/// the scene's tint.
-glm::vec3 light_channels(const SceneFeatures&, glm::vec3 rgb);
-
 LightRays start_rays(const LightList&, const MediumVolume&, const EntrySurfaces&, const DeviceMedium&,
                      const MarchSettings&, std::uint64_t seed);
 

@@ -10,6 +10,7 @@
 namespace turbid {
 namespace {
 
+constexpr int kRaysPerLaunch = 1 << 14;  // a multiple of the work-group: Ctrl-C is answered between launches
 constexpr int kGroundTexels = 768;     // at the most, per side
 constexpr float kGroundReach = 3.0f;  // the collecting map spans this many domain sizes
 
@@ -61,7 +62,7 @@ void March::start(const LightRays& light) {
   double largest = 0;
   for (int c = 0; c < 3; ++c) largest = std::max(largest, light.emitted[c]);
   // No sum can exceed what is emitted: 2^60 units leave two bits of headroom in 64-bit integers.
-  fixed_per_watt_ = std::exp2(std::floor(60.0 - std::log2(std::max(largest, 1e-30))));
+  fixed_per_watt_ = std::exp2(std::min(std::floor(60.0 - std::log2(std::max(largest, 1e-30))), 120.0));  // fits a float
   params_.fixed_per_watt = static_cast<float>(fixed_per_watt_);
   ray_count_ = light.rays.size();
   batches_ = 0;
@@ -77,17 +78,29 @@ void March::start(const LightRays& light) {
 }
 
 void March::enqueue_batch() {
-  cl::Queue& queue = session_.march_queue();
   reserve(ray_count_);
-  session_.fill_zero(queue, next_count_);
+  session_.fill_zero(session_.march_queue(), next_count_);
+  params_.first_ray = 0;
   params_.ray_count = static_cast<int>(ray_count_);
-  kernel_.enqueue(queue, {ray_count_}, {64}, medium_.regions_buffer, medium_.tile_map_buffer,
-                  medium_.block_region_buffer, medium_.distance_tiles, medium_.index_tiles, medium_.coefficient_tiles,
-                  params_, rays_, next_, next_count_, deposit_, tallies_, ground_, ground_rays_, transmitted_);
-  cl::check(clFlush(queue.get()), "starting the march");
+  enqueue_piece();
 }
 
-bool March::finish_batch() {
+void March::enqueue_piece() {
+  cl::Queue& queue = session_.march_queue();
+  const std::size_t count = std::min<std::size_t>(kRaysPerLaunch, ray_count_ - params_.first_ray);
+  kernel_.enqueue(queue, {count}, {64}, medium_.regions_buffer, medium_.tile_map_buffer, medium_.block_region_buffer,
+                  medium_.distance_tiles, medium_.index_tiles, medium_.coefficient_tiles, params_, rays_, next_,
+                  next_count_, deposit_, tallies_, ground_, ground_rays_, transmitted_);
+  cl::check(clFlush(queue.get()), "starting the march");
+  params_.first_ray += kRaysPerLaunch;
+}
+
+bool March::finish_batch(const std::function<void()>& between) {
+  while (params_.first_ray < params_.ray_count) {
+    session_.march_queue().finish();
+    if (between) between();
+    enqueue_piece();
+  }
   ray_count_ = static_cast<std::size_t>(session_.read(session_.march_queue(), next_count_)[0]);
   std::swap(rays_, next_);
   ++batches_;

@@ -2,6 +2,7 @@
 // Runs the marching pass: batches of rays until none is left, deposits and tallies in fixed point.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "host/transport/device_medium.h"
@@ -22,10 +23,11 @@ class March {
 
   /// Forgets earlier light and loads the rays.
   void start(const LightRays&);
-  /// Enqueues one batch of steps on the march queue and returns at once; only while rays are left.
+  /// Starts one batch of steps on the march queue and returns at once; only while rays are left.
   void enqueue_batch();
-  /// Waits for the batch and learns how many rays go on; false when none is left.
-  bool finish_batch();
+  /// Runs the rest of the batch, piece by piece, and learns how many rays go on; false when none is left.
+  /// `between` is called between pieces, a fraction of a second apart, and may throw to stop.
+  bool finish_batch(const std::function<void()>& between = {});
   std::size_t rays_left() const { return ray_count_; }
   int batches() const { return batches_; }
 
@@ -39,6 +41,7 @@ class March {
 
  private:
   void reserve(std::size_t rays);
+  void enqueue_piece();
 
   cl::Session& session_;
   const DeviceMedium& medium_;

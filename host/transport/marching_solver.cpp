@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/errors.h"
+
 namespace turbid {
 
 double EnergyBalance::imbalance() const {
@@ -23,11 +25,26 @@ void account(const DiffusionMedium& medium, DiffuseLight& light) {
       light.absorbed[c] += static_cast<double>(medium.s_a[c * stride + i]) * light.fluence[c * stride + i];
     }
     for (const BoundaryFace& face : medium.boundary) {
-      light.escaped[face.face][c] +=
-          medium.boundary_conductance(face, c) * light.fluence[medium.index(c, face.block, face.voxel)];
+      const double power = medium.boundary_conductance(face, c) * light.fluence[medium.index(c, face.block, face.voxel)];
+      (face.opaque ? light.absorbed_opaque : light.escaped[face.face])[c] += power;
     }
   }
 }
+
+namespace {
+
+/// In a closed domain where nothing absorbs the light would grow without end.
+void require_sink(const DiffusionMedium& medium) {
+  if (medium.active_voxels == 0 || !medium.boundary.empty()) return;
+  for (int c = 0; c < medium.channels; ++c) {
+    const auto first = medium.s_a.begin() + c * medium.stride(), last = first + medium.stride();
+    if (std::any_of(first, last, [](float s_a) { return s_a > 0.0f; })) continue;
+    throw InputError("the medium has no steady state: no face of the domain is open and nothing absorbs; "
+                     "open a face or give sigma_a > 0");
+  }
+}
+
+}  // namespace
 
 void MarchingSolver::prepare(const MediumVolume& medium) {
   medium_ = &medium;
@@ -36,16 +53,25 @@ void MarchingSolver::prepare(const MediumVolume& medium) {
   device_ = std::make_shared<const DeviceMedium>(upload_medium(context_.session, medium, context_.features));
   surfaces_.emplace(entry_surfaces(context_.description, medium, false));
   context_.progress.stage("prepare");
-  diffusion_.emplace(make_diffusion_medium(medium, context_.features.channels));
+  diffusion_.emplace(make_diffusion_medium(medium, context_.features.channels, context_.features.first_colour()));
+  context_.progress.update(0.4);
   march_.emplace(context_.session, *device_, context_.settings.march, medium.faces(), context_.surroundings);
+  require_sink(*diffusion_);
+  context_.progress.update(0.6);
   if (context_.features.scattering) prepare_diffusion(*diffusion_);
+  context_.progress.update(1.0);
+}
+
+double MarchingSolver::march_progress(const March& march) const {
+  const double all = static_cast<double>(std::max<std::size_t>(first_ray_count_, 1));
+  return std::max(0.0, 1.0 - static_cast<double>(march.rays_left()) / all);
 }
 
 void MarchingSolver::march_all(March& march) {
   while (march.rays_left() > 0) {
     march.enqueue_batch();
-    march.finish_batch();
-    context_.progress.update(1.0 - static_cast<double>(march.rays_left()) / static_cast<double>(std::max<std::size_t>(first_ray_count_, 1)));
+    march.finish_batch([&] { context_.progress.update(march_progress(march)); });
+    context_.progress.update(march_progress(march));
   }
 }
 
@@ -88,7 +114,7 @@ LightSolution MarchingSolver::light(const LightList& lights) {
   energy.missed = rays.missed;
   energy.reflected = tallies.reflected;
   energy.absorbed = tallies.absorbed + diffuse_light.absorbed;
-  energy.absorbed_opaque = rays.absorbed_opaque + tallies.opaque;
+  energy.absorbed_opaque = rays.absorbed_opaque + tallies.opaque + diffuse_light.absorbed_opaque;
   energy.in_flight = tallies.in_flight + source.unresolved + diffuse_light.stored;
   for (int face = 0; face < 6; ++face) {
     energy.escaped_faces[face] = tallies.escaped[face] + diffuse_light.escaped[face];

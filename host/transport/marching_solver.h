@@ -17,6 +17,7 @@ namespace turbid {
 struct DiffuseLight {
   std::vector<float> fluence;       ///< [channel][block][voxel] [W/voxel^2]
   glm::dvec3 absorbed{0};
+  glm::dvec3 absorbed_opaque{0};    ///< diffused into opaque bodies
   std::array<glm::dvec3, 6> escaped{};
   glm::dvec3 stored{0};             ///< still on its way (lattice only)
   int iterations = 0;
@@ -39,6 +40,9 @@ class MarchingSolver : public TransportSolver {
   /// Runs batches until no ray is left; a solver may relax what is there already meanwhile.
   virtual void march_all(March&);
   virtual DiffuseLight diffuse(const LightSource&) = 0;
+
+  /// Share of the rays that have ended.
+  double march_progress(const March&) const;
 
   SolverContext context_;
   std::size_t first_ray_count_ = 0;

@@ -20,7 +20,7 @@ glm::ivec3 block_coordinates(int block, glm::ivec3 blocks) {
 }
 
 /// Owner, first-flight scattering and emission of the voxels of one active block.
-void fill_block(PhotonMedium& out, const MediumVolume& medium, int block) {
+void fill_block(PhotonMedium& out, const MediumVolume& medium, int block, const std::vector<float>& floors) {
   const glm::ivec3 lower = 8 * out.blocks.coordinates(block);
   const float h = medium.frame().voxel_size;
   std::vector<int> owner(kVoxels);
@@ -28,7 +28,7 @@ void fill_block(PhotonMedium& out, const MediumVolume& medium, int block) {
   std::map<int, std::vector<Coefficients>> varying;
   for (int v = 0; v < kVoxels; ++v) {
     const int r = owner[v];
-    if (r < 0 || !medium.region(r).participates()) continue;
+    if (r < 0 || floors[r] < 0.0f) continue;
     const Region& region = medium.region(r);
     Coefficients k{region.sigma_s, region.sigma_a, region.emission, region.g};
     if (region.heterogeneous) {
@@ -109,7 +109,8 @@ std::uint64_t fingerprint(std::uint64_t before, const void* bytes, std::size_t s
 }
 
 PhotonMedium upload_photon_medium(cl::Session& session, const MediumVolume& medium, const DeviceMedium& device) {
-  PhotonMedium out(active_blocks(medium));
+  const std::vector<float> floors = floors_of_s(medium);
+  PhotonMedium out(active_blocks(medium, floors));
   const glm::ivec3 blocks = device.frame.blocks();
   const int block_count = device.block_count();
   const float h = device.frame.voxel_size;
@@ -117,7 +118,7 @@ PhotonMedium upload_photon_medium(cl::Session& session, const MediumVolume& medi
   out.sigma_s.assign(out.stride(), glm::vec3(0));
   if (device.features.emission) out.emission.assign(out.stride(), glm::vec3(0));
   parallel_ranges(out.blocks.count(), [&](int begin, int end) {
-    for (int block = begin; block < end; ++block) fill_block(out, medium, block);
+    for (int block = begin; block < end; ++block) fill_block(out, medium, block, floors);
   });
   out.active_voxels = out.stride() - std::count(out.region.begin(), out.region.end(), std::int16_t{-1});
   out.volume = box_volumes(medium, out.blocks, out.region);

@@ -32,7 +32,7 @@ void add_inside(PhotonSources& out, const Light& light, int region, const GridFr
   const bool spot = light.kind == LightKind::spot;
   copy(spot ? glm::normalize(light.direction) : glm::vec3(0, 0, 1), source.direction);
   source.cos_half_angle = spot ? std::cos(glm::radians(0.5f * light.cone_angle)) : -1.0f;
-  const glm::dvec3 power(light_channels(features, light.power));
+  const glm::dvec3 power(features.to_channels(light.power));
   out.emitted += power;
   out.add(source, power);
 }
@@ -65,7 +65,7 @@ void add_emission(PhotonSources& out, const PhotonMedium& medium, const SceneFea
          source.position);
     source.region = medium.region[at];
     source.kind = TURBID_SOURCE_VOXEL;
-    const glm::dvec3 power(light_channels(features, medium.emission[at]));
+    const glm::dvec3 power(features.to_channels(medium.emission[at]));
     out.emitted += power;
     out.add(source, power);
   }

@@ -25,7 +25,7 @@ struct ImageMetadata {
   std::map<std::string, float> numbers;
 };
 
-/// Channels R G B A, direct.R.., scattered.R.., depth.Z, N.X N.Y N.Z as 32-bit float (depth, N) and 16-bit half otherwise.
+/// Channels R G B A, direct.R.., scattered.R.., depth.Z, N.X N.Y N.Z as 32-bit float.
 /// Writes to a temporary name first and renames: no half-written file. Throws InputError if that fails (disk full, ...).
 void write_exr(const ViewImage&, const ImageMetadata&, const std::string& path);
 

@@ -104,8 +104,6 @@ void extrapolate(Patch& patch) {
 
 std::vector<float> make_source_tiles(const FluenceVolume& volume, const MediumVolume& medium, const DeviceMedium& device) {
   const int channels = device.features.channels, width = channels == 3 ? 4 : 1;
-  const glm::vec3 tint = device.features.tint;
-  const int strongest = tint.r >= tint.g && tint.r >= tint.b ? 0 : tint.g >= tint.b ? 1 : 2;
   std::vector<float> tiles(device.source_tiles.size() * TURBID_TILE_NODES * width, 0.0f);
   parallel_ranges(static_cast<int>(device.source_tiles.size()), [&](int begin, int end) {
     Patch patch;
@@ -124,7 +122,7 @@ std::vector<float> make_source_tiles(const FluenceVolume& volume, const MediumVo
             if (channels == 3) {
               for (int c = 0; c < 3; ++c) out[c] = value[c];
             } else {
-              out[0] = value[strongest] / std::max(tint[strongest], 1e-30f);
+              out[0] = device.features.to_channels(value).x;
             }
           }
         }

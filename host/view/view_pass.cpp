@@ -15,7 +15,7 @@
 namespace turbid {
 namespace {
 
-constexpr int kSamplesPerLaunch = 1 << 16;
+constexpr int kSamplesPerLaunch = 1 << 14;  // Ctrl-C is answered between launches
 constexpr float kFarAway = 1e10f;
 
 void copy(glm::vec3 from, float (&to)[3]) {

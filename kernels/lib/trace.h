@@ -76,7 +76,7 @@ static void find_crossing(const Medium* medium, Step* step, int region, float3 a
   const float d_low = surface_at(medium, step->surface, locate(a + low * (b - a))).w;
   const float d_high = surface_at(medium, step->surface, locate(a + high * (b - a))).w;
   const float length = fmax(distance(a, b), 1e-6f);
-  if (d_low * d_high < 0.0f) {
+  if ((d_low < 0.0f) != (d_high < 0.0f)) {
     const float zero = low + (high - low) * d_low / (d_low - d_high);
     const float guard = 1e-3f / length;  // a thousandth of a voxel on either side
     low = fmax(low, zero - guard);
@@ -152,7 +152,7 @@ static Step advance(const Medium* medium, Ray* ray, float step_size) {
 #if TURBID_GRADED
   if (graded) {
     // The closing kick; after a shortened step the velocity follows the part that was done.
-    const float done = fast_length(to - from) / fmax(fast_length(v) * dtau, 1e-12f);
+    const float done = length(to - from) / fmax(length(v) * dtau, 1e-12f);
     const float4 u = index_at(medium, ray->region, locate(to));
     v = ray->v + (v - ray->v) * done + 0.5f * dtau * done * u.xyz;
   }

@@ -35,7 +35,8 @@ typedef struct {
   int batch_steps;        // steps per launch
   int max_steps;
   int max_bounces;
-  int ray_count;
+  int first_ray;          // of this launch
+  int ray_count;          // of all
   float fixed_per_watt;   // fixed-point units per watt
   int faces[6];           // TURBID_FACE_...
   int straight;           // 1: nothing refracts; what passes the medium is collected per shadow-map texel instead
@@ -45,6 +46,6 @@ typedef struct {
   float ground_texel;     // edge of its texels [voxels]
   int ground_size;        // texels per side
 } MarchParams;
-TURBID_ASSERT_SIZE(MarchParams, 76);
+TURBID_ASSERT_SIZE(MarchParams, 80);
 
 #endif

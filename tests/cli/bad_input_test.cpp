@@ -17,11 +17,13 @@ void expect_refused(const Outcome& outcome, const Words& words) {
   const Words lines = outcome.error_lines();
   ASSERT_EQ(lines.size(), 1u) << outcome.err;
   EXPECT_TRUE(lines.back().starts_with("turbid: ")) << outcome.err;
-  for (const std::string& word : words) EXPECT_NE(lines.back().find(word), std::string::npos) << "no \"" << word << "\" in " << outcome.err;
+  for (const std::string& word : words)
+    EXPECT_NE(lines.back().find(word), std::string::npos) << "no \"" << word << "\" in " << outcome.err;
 }
 
 /// Renders a scene that must be refused, beside the files that the place holds already.
-void expect_scene_refused(const Workplace& place, const std::string& scene, const Words& words, const Words& more = {}) {
+void expect_scene_refused(const Workplace& place, const std::string& scene, const Words& words,
+                          const Words& more = {}) {
   place.write("s.toml", scene);
   const Words before = place.content();
   Words arguments{"render", "s.toml", "-q", "-o", "pictures"};
@@ -30,8 +32,12 @@ void expect_scene_refused(const Workplace& place, const std::string& scene, cons
   EXPECT_EQ(place.content(), before);
 }
 
-std::string with_mesh(const std::string& file) { return milky_ball_with("shape = \"sphere\"\nradius = 10", "mesh = \"" + file + "\""); }
-std::string with_grid(const std::string& what) { return milky_ball_with("sigma_s = [1.0, 1.2, 1.5]", "sigma_s = { vdb = " + what + " }"); }
+std::string with_mesh(const std::string& file) {
+  return milky_ball_with("shape = \"sphere\"\nradius = 10", "mesh = \"" + file + "\"");
+}
+std::string with_grid(const std::string& what) {
+  return milky_ball_with("sigma_s = [1.0, 1.2, 1.5]", "sigma_s = { vdb = " + what + " }");
+}
 
 TEST(BadInput, a_scene_that_is_not_there) {
   const Workplace place;
@@ -49,7 +55,8 @@ TEST(BadInput, a_scene_that_is_not_toml) {
 }
 
 TEST(BadInput, a_misspelt_key) {
-  expect_scene_refused(Workplace(), milky_ball_with("radius", "radios"), {"s.toml:10:1: radios = 10: unknown key", "radius"});
+  expect_scene_refused(Workplace(), milky_ball_with("radius", "radios"),
+                       {"s.toml:10:1: radios = 10: unknown key", "radius"});
 }
 
 TEST(BadInput, a_scene_without_a_camera_can_be_solved_but_not_rendered) {
@@ -88,8 +95,9 @@ TEST(BadInput, a_mesh_with_a_corner_that_is_no_number) {
 }
 
 TEST(BadInput, an_object_outside_the_domain) {
-  expect_scene_refused(Workplace(), milky_ball_with("resolution = 24", "resolution = 24\nmin = [100, 100, 100]\nmax = [120, 120, 120]"),
-                       {"s.toml:10:1: object \"sphere\"", "outside the domain"});
+  expect_scene_refused(
+      Workplace(), milky_ball_with("resolution = 24", "resolution = 24\nmin = [100, 100, 100]\nmax = [120, 120, 120]"),
+      {"s.toml:10:1: object \"sphere\"", "outside the domain"});
 }
 
 TEST(BadInput, an_object_far_larger_than_the_domain_is_cut_with_a_warning) {
@@ -112,20 +120,25 @@ TEST(BadInput, a_grid_file_that_lacks_the_grid_or_holds_a_level_set_where_a_dens
   place.write("s.toml", kMilkyBall);
   ASSERT_EQ(place.turbid({"voxelise", "s.toml", "-q", "-o", "medium.vdb"}).status, 0);
   expect_scene_refused(place, with_grid("\"medium.vdb\", grid = \"density\""), {"s.toml:6:", "medium.vdb", "density"});
-  expect_scene_refused(place, with_grid("\"medium.vdb\", grid = \"signed_distance\""), {"s.toml:6:", "medium.vdb", "level set"});
+  expect_scene_refused(place, with_grid("\"medium.vdb\", grid = \"signed_distance\""),
+                       {"s.toml:6:", "medium.vdb", "level set"});
 }
 
 TEST(BadInput, coefficients_out_of_range) {
-  expect_scene_refused(Workplace(), milky_ball_with("[1.0, 1.2, 1.5]", "-1"), {"s.toml:6:11: sigma_s = -1: must be >= 0 [1/mm]"});
+  expect_scene_refused(Workplace(), milky_ball_with("[1.0, 1.2, 1.5]", "-1"),
+                       {"s.toml:6:11: sigma_s = -1: must be >= 0 [1/mm]"});
   expect_scene_refused(Workplace(), milky_ball_with("[1.0, 1.2, 1.5]", "nan"), {"s.toml:6:11: sigma_s = nan"});
-  expect_scene_refused(Workplace(), milky_ball_with("eta = 1.3", "eta = 0.9"), {"s.toml:5:7: eta = 0.9: must be in [1, 10]"});
+  expect_scene_refused(Workplace(), milky_ball_with("eta = 1.3", "eta = 0.9"),
+                       {"s.toml:5:7: eta = 0.9: must be in [1, 10]"});
   expect_scene_refused(Workplace(), milky_ball_with("eta = 1.3", "eta = nan"), {"s.toml:5:7: eta = nan"});
 }
 
 TEST(BadInput, expressions_that_leave_the_range_name_the_place_where) {
   expect_scene_refused(Workplace(), milky_ball_with("[1.0, 1.2, 1.5]", "{ expression = \"x\" }"), {"milk", "sigma_s"});
-  expect_scene_refused(Workplace(), milky_ball_with("[1.0, 1.2, 1.5]", "{ expression = \"sqrt(x)\" }"), {"milk", "sigma_s"});
-  expect_scene_refused(Workplace(), milky_ball_with("eta = 1.3", "eta = { expression = \"1 + 0.1*x\" }"), {"milk", "eta"});
+  expect_scene_refused(Workplace(), milky_ball_with("[1.0, 1.2, 1.5]", "{ expression = \"sqrt(x)\" }"),
+                       {"milk", "sigma_s"});
+  expect_scene_refused(Workplace(), milky_ball_with("eta = 1.3", "eta = { expression = \"1 + 0.1*x\" }"),
+                       {"milk", "eta"});
 }
 
 TEST(BadInput, resolutions_of_nothing_and_of_more_memory_than_there_is) {
@@ -136,7 +149,8 @@ TEST(BadInput, resolutions_of_nothing_and_of_more_memory_than_there_is) {
 }
 
 TEST(BadInput, unknown_devices_and_solvers) {
-  expect_scene_refused(Workplace(), kMilkyBall, {"--device warp: no such OpenCL device; there is: 0:0"}, {"--device", "warp"});
+  expect_scene_refused(Workplace(), kMilkyBall, {"--device warp: no such OpenCL device; there is: 0:0"},
+                       {"--device", "warp"});
   expect_scene_refused(Workplace(), kMilkyBall, {"--solver magic", "steady", "lattice"}, {"--solver", "magic"});
 }
 

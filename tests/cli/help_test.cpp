@@ -33,7 +33,9 @@ struct WrongCommandLine {
   std::vector<std::string> arguments;
   const char* said;
 };
-void PrintTo(const WrongCommandLine& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const WrongCommandLine& c, std::ostream* out) {
+  *out << c.name;
+}
 
 class CommandLine : public testing::TestWithParam<WrongCommandLine> {};
 
@@ -51,16 +53,18 @@ TEST_P(CommandLine, what_cannot_be_followed_is_one_clear_line_and_status_2) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, CommandLine,
-    testing::Values(WrongCommandLine{"nothing", {}, "no command given"},
-                    WrongCommandLine{"unknown_command", {"rendr", "s.toml"}, "rendr: no such command; there are render, solve"},
-                    WrongCommandLine{"no_scene", {"render"}, "SCENE is required; see turbid render --help"},
-                    WrongCommandLine{"two_scenes", {"render", "s.toml", "t.toml"}, "t.toml"},
-                    WrongCommandLine{"unknown_flag", {"solve", "s.toml", "--fast"}, "--fast"},
-                    WrongCommandLine{"word_for_a_number", {"check", "s.toml", "--resolution", "high"}, "--resolution = high"},
-                    WrongCommandLine{"negative_seed", {"render", "s.toml", "--seed", "-1"}, "--seed"},
-                    WrongCommandLine{"loud_and_quiet", {"render", "s.toml", "-v", "-q"}, "excludes"},
-                    WrongCommandLine{"no_file", {"info"}, "FILE is required"},
-                    WrongCommandLine{"setting_without_value", {"check", "s.toml", "-D", "camera.fov"}, "-D camera.fov: expected key.sub=value"}),
+    testing::Values(
+        WrongCommandLine{"nothing", {}, "no command given"},
+        WrongCommandLine{"unknown_command", {"rendr", "s.toml"}, "rendr: no such command; there are render, solve"},
+        WrongCommandLine{"no_scene", {"render"}, "SCENE is required; see turbid render --help"},
+        WrongCommandLine{"two_scenes", {"render", "s.toml", "t.toml"}, "t.toml"},
+        WrongCommandLine{"unknown_flag", {"solve", "s.toml", "--fast"}, "--fast"},
+        WrongCommandLine{"word_for_a_number", {"check", "s.toml", "--resolution", "high"}, "--resolution = high"},
+        WrongCommandLine{"negative_seed", {"render", "s.toml", "--seed", "-1"}, "--seed"},
+        WrongCommandLine{"loud_and_quiet", {"render", "s.toml", "-v", "-q"}, "excludes"},
+        WrongCommandLine{"no_file", {"info"}, "FILE is required"},
+        WrongCommandLine{
+            "setting_without_value", {"check", "s.toml", "-D", "camera.fov"}, "-D camera.fov: expected key.sub=value"}),
     [](const auto& info) { return info.param.name; });
 
 }  // namespace

@@ -31,14 +31,16 @@ class Commands : public testing::Test {
 TEST_F(Commands, render_writes_picture_preview_and_report_and_says_where) {
   const Outcome outcome = place.turbid({"render", "ball.toml"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(place.content(), (Words{"ball.toml", "out/", "out/ball/", "out/ball/ball.exr", "out/ball/ball.png", "out/ball/report.json"}));
-  for (const char* said : {"out/ball/ball.exr", "out/ball/ball.png", "out/ball/report.json", "emitted", "towards -x", "imbalance"})
+  EXPECT_EQ(place.content(), (Words{"ball.toml", "out/", "out/ball/", "out/ball/ball.exr", "out/ball/ball.png",
+                                    "out/ball/report.json"}));
+  for (const char* said :
+       {"out/ball/ball.exr", "out/ball/ball.png", "out/ball/report.json", "emitted", "towards -x", "imbalance"})
     EXPECT_NE(outcome.out.find(said), std::string::npos) << said << " in " << outcome.out;
 
   const Outcome info = place.turbid({"info", "out/ball/ball.exr"});
   EXPECT_EQ(info.status, 0) << info.err;
-  for (const char* said : {"48 x 32 pixels", "direct.R", "scattered.B", "depth.Z", "N.X", "turbid:scene_hash", "turbid:device",
-                           "turbid:voxel_size", "turbid:solver = \"steady\"", "turbid:seconds:view"})
+  for (const char* said : {"48 x 32 pixels", "direct.R", "scattered.B", "depth.Z", "N.X", "turbid:scene_hash",
+                           "turbid:device", "turbid:voxel_size", "turbid:solver = \"steady\"", "turbid:seconds:view"})
     EXPECT_NE(info.out.find(said), std::string::npos) << said << " in " << info.out;
   // Lines of channels: name, type, min, max, mean, NaN, Inf.
   std::istringstream lines(info.out);
@@ -94,7 +96,8 @@ TEST_F(Commands, every_watt_is_accounted_for_per_colour) {
       for (const auto& [face, power] : energy["escaped_faces"].items()) faces += power[c].get<double>();
       EXPECT_NEAR(faces, energy["escaped"][c].get<double>(), 1e-9) << "the faces' sum, in double precision";
       double rest = 0;
-      for (const char* where : {"missed", "reflected_at_entry", "absorbed", "absorbed_by_opaque", "escaped", "in_flight"})
+      for (const char* where :
+           {"missed", "reflected_at_entry", "absorbed", "absorbed_by_opaque", "escaped", "in_flight"})
         rest += energy[where][c].get<double>();
       EXPECT_NEAR(energy["emitted"][c].get<double>(), 1.0, 1e-6) << "the light has 1 W";
       EXPECT_NEAR(rest, 1.0, 1e-5);
@@ -106,7 +109,8 @@ TEST_F(Commands, solve_writes_fluence_and_medium_as_openvdb) {
   EXPECT_EQ(place.turbid({"solve", "ball.toml", "-o", "f.vdb", "-q"}).status, 0);
   const Outcome info = place.turbid({"info", "f.vdb"});
   EXPECT_EQ(info.status, 0) << info.err;
-  for (const char* grid : {"fluence: vec3s, fog volume", "deposit: ", "eta: ", "sigma_s: ", "sigma_a: ", "signed_distance: float, level set", "unit = mm"})
+  for (const char* grid : {"fluence: vec3s, fog volume", "deposit: ", "eta: ", "sigma_s: ", "sigma_a: ",
+                           "signed_distance: float, level set", "unit = mm"})
     EXPECT_NE(info.out.find(grid), std::string::npos) << grid << " in " << info.out;
   EXPECT_EQ(json_of(place.turbid({"info", "f.vdb", "--json"}))["kind"], "vdb");
   EXPECT_EQ(place.content(), (Words{"ball.toml", "f.vdb"}));
@@ -123,7 +127,8 @@ TEST_F(Commands, check_prints_a_scene_that_reads_back_as_the_same) {
   const Outcome outcome = place.turbid({"check", "ball.toml", "-D", "camera.fov=20", "-q"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("fov = 20.0"), std::string::npos) << outcome.out;
-  for (const char* said : {"bodies: 1", "scattering: isotropic", "active blocks:", "optical thickness per voxel: min", "memory: about", "no warnings"})
+  for (const char* said : {"bodies: 1", "scattering: isotropic", "active blocks:", "optical thickness per voxel: min",
+                           "memory: about", "no warnings"})
     EXPECT_NE(outcome.out.find(said), std::string::npos) << said << " in " << outcome.out;
   place.write("again.toml", outcome.out);
   EXPECT_EQ(json_of(place.turbid({"check", "again.toml", "--json", "-q"}))["scene"]["hash"],
@@ -140,14 +145,17 @@ TEST_F(Commands, check_warns_of_what_is_doubtful) {
   EXPECT_NE(warnings({"material.milk.sigma_s=50"}).find("optically too thick"), std::string::npos);
   EXPECT_NE(warnings({"light.0.position=[1,0,0]"}).find("light 1 stands inside \\\"sphere\\\""), std::string::npos);
   EXPECT_NE(warnings({"camera.position=[1,0,0]"}).find("the camera stands inside \\\"sphere\\\""), std::string::npos);
-  EXPECT_NE(warnings({"object.0.interface='smooth'", "material.milk.eta=2.5", "domain.smoothing=0.3"}).find("refractive index"),
+  EXPECT_NE(warnings({"object.0.interface='smooth'", "material.milk.eta=2.5", "domain.smoothing=0.3"})
+                .find("refractive index"),
             std::string::npos);
-  EXPECT_NE(warnings({"object.0={shape='box', size=[20, 20, 0.5], material='milk'}"}).find("voxels thick"), std::string::npos);
+  EXPECT_NE(warnings({"object.0={shape='box', size=[20, 20, 0.5], material='milk'}"}).find("voxels thick"),
+            std::string::npos);
 }
 
 TEST_F(Commands, overrides_reach_the_scene) {
-  const Json json = json_of(place.turbid({"render", "ball.toml", "-q", "--json", "-D", "camera.width=20", "-D", "light.0.power=[2,1,0.5]",
-                                          "--resolution", "16", "--solver", "lattice", "--seed", "7"}));
+  const Json json =
+      json_of(place.turbid({"render", "ball.toml", "-q", "--json", "-D", "camera.width=20", "-D",
+                            "light.0.power=[2,1,0.5]", "--resolution", "16", "--solver", "lattice", "--seed", "7"}));
   EXPECT_EQ(json["picture"]["width"], 20);
   EXPECT_EQ(json["medium"]["grid"][0], 16);
   EXPECT_EQ(json["solver"]["name"], "lattice");
@@ -159,7 +167,8 @@ TEST_F(Commands, quiet_runs_say_nothing_on_standard_error) {
   EXPECT_EQ(place.turbid({"render", "ball.toml", "-q"}).err, "");
   const Outcome talking = place.turbid({"render", "ball.toml"});
   for (const char* stage : {"read", "voxelise", "march", "view", "write"})
-    EXPECT_NE(("\n" + talking.err).find("\n" + std::string(stage) + " "), std::string::npos) << stage << " in " << talking.err;
+    EXPECT_NE(("\n" + talking.err).find("\n" + std::string(stage) + " "), std::string::npos)
+        << stage << " in " << talking.err;
 }
 
 TEST_F(Commands, devices_lists_what_there_is_and_what_would_be_used) {
@@ -185,7 +194,8 @@ TEST_F(Commands, the_same_scene_gives_the_same_bits_whatever_the_number_of_threa
     if (device["platform"] == "Portable Computing Language") {
       EXPECT_EQ(device["compute_units"], std::stoi(threads));
     }
-    return json_of(place.turbid({"render", "ball.toml", "-q", "--json", "--solver", solver}, settings))["checksums"].dump();
+    return json_of(place.turbid({"render", "ball.toml", "-q", "--json", "--solver", solver}, settings))["checksums"]
+        .dump();
   };
   for (const char* solver : {"steady", "lattice"}) {
     const std::string one = run("1", solver);

@@ -21,7 +21,9 @@ class Trouble : public testing::Test {
 
 TEST_F(Trouble, ctrl_c_ends_soon_says_what_was_finished_and_leaves_nothing) {
   // Large enough for every stage to be still at work when the signal comes.
-  const Words large{"render", "ball.toml", "-D", "camera.width=2048", "-D", "camera.height=2048", "-D", "camera.samples=16", "--resolution", "128"};
+  const Words large{
+      "render",       "ball.toml", "-D", "camera.width=2048", "-D", "camera.height=2048", "-D", "camera.samples=16",
+      "--resolution", "128"};
   for (const std::string finished : {"read", "lights", "march", "diffuse"}) {
     const Outcome outcome = place.turbid(large, {.interrupt_at = finished});
     EXPECT_EQ(outcome.status, 130) << outcome.err;
@@ -39,7 +41,8 @@ TEST_F(Trouble, ctrl_c_ends_soon_says_what_was_finished_and_leaves_nothing) {
 TEST_F(Trouble, a_full_disk_is_one_line_and_leaves_nothing) {
   // PoCL's compiler writes files as well, so the limit must let those pass: pictures and grids here are larger.
   const RunSettings full{.largest_file = 4'000'000};
-  const Outcome render = place.turbid({"render", "ball.toml", "-q", "-o", "p", "-D", "camera.width=1200", "-D", "camera.height=1200"}, full);
+  const Outcome render = place.turbid(
+      {"render", "ball.toml", "-q", "-o", "p", "-D", "camera.width=1200", "-D", "camera.height=1200"}, full);
   EXPECT_EQ(render.status, 2) << render.err;
   EXPECT_EQ(render.err, "turbid: p/ball.exr: cannot be written: File too large\n");
   const Outcome solve = place.turbid({"solve", "ball.toml", "-q", "-o", "f.vdb", "--resolution", "96"}, full);
@@ -51,7 +54,8 @@ TEST_F(Trouble, a_full_disk_is_one_line_and_leaves_nothing) {
 
 TEST_F(Trouble, a_run_that_loses_energy_fails_but_keeps_its_files) {
   // One step of a solve that may end at 10 %: far from the steady state.
-  const Outcome outcome = place.turbid({"render", "ball.toml", "-q", "-o", "p", "-D", "solver.tolerance=0.1", "-D", "solver.steady.max_iterations=1"});
+  const Outcome outcome = place.turbid(
+      {"render", "ball.toml", "-q", "-o", "p", "-D", "solver.tolerance=0.1", "-D", "solver.steady.max_iterations=1"});
   EXPECT_EQ(outcome.status, 1);
   ASSERT_EQ(outcome.error_lines().size(), 1u) << outcome.err;
   EXPECT_TRUE(outcome.err.starts_with("turbid: the energy balance is off by ")) << outcome.err;
@@ -59,7 +63,8 @@ TEST_F(Trouble, a_run_that_loses_energy_fails_but_keeps_its_files) {
 }
 
 TEST_F(Trouble, kernels_that_are_missing_or_do_not_build_are_status_3) {
-  const Outcome missing = place.turbid({"render", "ball.toml", "-q"}, {.environment = {{"TURBID_KERNEL_DIR", "/nonexistent"}}});
+  const Outcome missing =
+      place.turbid({"render", "ball.toml", "-q"}, {.environment = {{"TURBID_KERNEL_DIR", "/nonexistent"}}});
   EXPECT_EQ(missing.status, 3);
   EXPECT_EQ(missing.error_lines().size(), 1u) << missing.err;
   EXPECT_NE(missing.err.find("/nonexistent"), std::string::npos) << missing.err;

@@ -12,10 +12,14 @@ TEST(KernelFiles, RayProgramsBuildForEveryKindOfScene) {
   for (const char* file : {"march.cl", "view.cl"}) {
     for (int choice = 0; choice < 32; ++choice) {
       const long channels = choice & 1 ? 3 : 1, bodies = choice & 2 ? 2 : 0;
-      EXPECT_NO_THROW(test::session().build(file, {{"TURBID_CHANNELS", channels}, {"TURBID_BODIES", bodies},
-                                                   {"TURBID_GRADED", choice >> 2 & 1}, {"TURBID_HETEROGENEOUS", choice >> 3 & 1},
-                                                   {"TURBID_SCATTERING", choice >> 4 & 1}, {"TURBID_VOXELS_X", 16},
-                                                   {"TURBID_VOXELS_Y", 24}, {"TURBID_VOXELS_Z", 8}}))
+      EXPECT_NO_THROW(test::session().build(file, {{"TURBID_CHANNELS", channels},
+                                                   {"TURBID_BODIES", bodies},
+                                                   {"TURBID_GRADED", choice >> 2 & 1},
+                                                   {"TURBID_HETEROGENEOUS", choice >> 3 & 1},
+                                                   {"TURBID_SCATTERING", choice >> 4 & 1},
+                                                   {"TURBID_VOXELS_X", 16},
+                                                   {"TURBID_VOXELS_Y", 24},
+                                                   {"TURBID_VOXELS_Z", 8}}))
           << file << " " << choice;
     }
   }
@@ -28,7 +32,9 @@ TEST(KernelFiles, LatticesOfEitherEdgeBuildForEveryCollision) {
   }
 }
 
-TEST(KernelFiles, TheSteadySolveBuilds) { EXPECT_NO_THROW(test::session().build("steady.cl", {})); }
+TEST(KernelFiles, TheSteadySolveBuilds) {
+  EXPECT_NO_THROW(test::session().build("steady.cl", {}));
+}
 
 TEST(KernelFiles, AMissingIntegerIsAnErrorThatNamesIt) {
   try {

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// The blockwise lattice against one global lattice in double precision; what a step does with energy; the printed matrix.
+// The blockwise lattice against one global lattice in double precision; what a step does with energy; the printed
+// matrix.
+#include "host/transport/lattice.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "host/transport/lattice.h"
 #include "tests/support/test_diffusion.h"
 #include "volumes/solid.h"
 
 namespace turbid {
 namespace {
 
-constexpr CollisionVariant kVariants[] = {CollisionVariant::paper, CollisionVariant::exponential, CollisionVariant::trapezoid,
-                                          CollisionVariant::trt};
+constexpr CollisionVariant kVariants[] = {CollisionVariant::paper, CollisionVariant::exponential,
+                                          CollisionVariant::trapezoid, CollisionVariant::trt};
 
 LatticeSettings settings(CollisionVariant variant, int edge, int inner = 1) {
   LatticeSettings s;
@@ -26,9 +28,12 @@ LatticeSettings settings(CollisionVariant variant, int edge, int inner = 1) {
 /// A sphere in a box with a jump of the index, open in x, mirrored in y, periodic in z.
 MediumDescription mixed_scene() {
   MediumDescription scene = test::empty_domain({24, 16, 16}, 1.0f);
-  scene.faces = {FaceBoundary::open, FaceBoundary::open, FaceBoundary::mirror, FaceBoundary::mirror, FaceBoundary::periodic, FaceBoundary::periodic};
-  test::add_body(scene, make_box({20, 30, 30}, test::at({12, 8, 8})), test::make_material({.sigma_s = glm::vec3(1), .eta = 1.2f}));
-  test::add_body(scene, make_sphere(5, test::at({12, 8, 8})), test::make_material({.sigma_s = glm::vec3(1), .eta = 1.5f}));
+  scene.faces = {FaceBoundary::open,   FaceBoundary::open,     FaceBoundary::mirror,
+                 FaceBoundary::mirror, FaceBoundary::periodic, FaceBoundary::periodic};
+  test::add_body(scene, make_box({20, 30, 30}, test::at({12, 8, 8})),
+                 test::make_material({.sigma_s = glm::vec3(1), .eta = 1.2f}));
+  test::add_body(scene, make_sphere(5, test::at({12, 8, 8})),
+                 test::make_material({.sigma_s = glm::vec3(1), .eta = 1.5f}));
   return scene;
 }
 
@@ -53,7 +58,8 @@ TEST(Lattice, StepsOfBlocksAreStepsOfTheWholeLattice) {
     for (int edge : {4, 8}) {
       Lattice lattice(test::session(), medium, settings(variant, edge));
       lattice.set_source(q);
-      std::vector<test::DenseDiffusion::Populations> state(channels, test::DenseDiffusion::Populations(medium.stride(), {0, 0, 0, 0, 0, 0}));
+      std::vector<test::DenseDiffusion::Populations> state(
+          channels, test::DenseDiffusion::Populations(medium.stride(), {0, 0, 0, 0, 0, 0}));
       for (int step = 1; step <= 12; ++step) {
         lattice.enqueue_sweeps(1);
         if (step != 2 && step != 5 && step != 12) {
@@ -73,7 +79,8 @@ TEST(Lattice, StepsOfBlocksAreStepsOfTheWholeLattice) {
             worst = std::max(worst, std::abs(expected.fluence[i] - fluence[c * medium.stride() + i]));
           }
           // Single precision: s from p1 = s / (1 + s/2) loses a factor 1 + s/2 = 6 of 1e-7; 12 steps.
-          EXPECT_LT(worst / largest, 1e-5) << "collision " << static_cast<int>(variant) << ", edge " << edge << ", step " << step;
+          EXPECT_LT(worst / largest, 1e-5)
+              << "collision " << static_cast<int>(variant) << ", edge " << edge << ", step " << step;
         }
       }
     }
@@ -97,7 +104,8 @@ TEST(Lattice, AStepKeepsTheEnergyIdentityWhereverItStands) {
         double escaped = 0;
         for (const glm::dvec3& face : energy.escaped) escaped += face.x;
         // Block sums in single precision, relative to what is in motion: up to 30 times the source after 24 steps.
-        EXPECT_NEAR((energy.absorbed.x + escaped + energy.stored.x) / total, 1, 1e-5) << static_cast<int>(variant) << " " << edge;
+        EXPECT_NEAR((energy.absorbed.x + escaped + energy.stored.x) / total, 1, 1e-5)
+            << static_cast<int>(variant) << " " << edge;
         EXPECT_GT(escaped, 0);
         EXPECT_EQ(energy.escaped[2], glm::dvec3(0));  // mirror
         EXPECT_EQ(energy.escaped[4], glm::dvec3(0));  // periodic
@@ -107,8 +115,9 @@ TEST(Lattice, AStepKeepsTheEnergyIdentityWhereverItStands) {
 }
 
 TEST(Lattice, ThePrintedMatrixAbsorbsNothing) {
-  // Bernabei Eq. 5: Theta_0j = sigma_a, Theta_i0 = 1/6, Theta_ij = sigma_s/6 + (i = j)(1 - sigma_t): every column sums to 1, so
-  // what row 0 absorbs comes back. Ours is its direction-to-direction part, whose columns sum to 1 - sigma_a, with a sink.
+  // Bernabei Eq. 5: Theta_0j = sigma_a, Theta_i0 = 1/6, Theta_ij = sigma_s/6 + (i = j)(1 - sigma_t): every column sums
+  // to 1, so what row 0 absorbs comes back. Ours is its direction-to-direction part, whose columns sum to 1 - sigma_a,
+  // with a sink.
   const double s = 0.7, s_a = 0.2, s_s = s - s_a;
   const Collision k = collision_coefficients(CollisionVariant::paper, s, s_a);
   for (int j = 0; j < 6; ++j) {
@@ -116,7 +125,8 @@ TEST(Lattice, ThePrintedMatrixAbsorbsNothing) {
     f[j] = 1;
     const double after = 1 - k.p0;
     for (int a = 0; a < 3; ++a) {
-      const double even = after / 3 + (1 - k.p2) * (f[2 * a] + f[2 * a + 1] - 1.0 / 3), odd = (1 - k.p1) * (f[2 * a] - f[2 * a + 1]);
+      const double even = after / 3 + (1 - k.p2) * (f[2 * a] + f[2 * a + 1] - 1.0 / 3),
+                   odd = (1 - k.p1) * (f[2 * a] - f[2 * a + 1]);
       out[2 * a] = 0.5 * (even + odd);
       out[2 * a + 1] = 0.5 * (even - odd);
     }
@@ -163,7 +173,8 @@ TEST(Lattice, BlocksAndInnerStepsDoNotChangeTheSteadyState) {
         difference += std::abs(fluence[i] - first[i]);
         total += std::abs(first[i]);
       }
-      EXPECT_LT(difference / total, 4e-5) << "b = " << edge << ", m = " << inner;  // two runs of estimated error 1e-5, safety 2
+      EXPECT_LT(difference / total, 4e-5)
+          << "b = " << edge << ", m = " << inner;  // two runs of estimated error 1e-5, safety 2
     }
   }
 }

@@ -37,8 +37,14 @@ std::vector<Sample> sample(const DeviceMedium& medium, const std::vector<glm::ve
   std::vector<Sample> result;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const float* a = out.data() + 16 * i;
-    result.push_back({static_cast<int>(a[0]), static_cast<int>(a[1]), {a[2], a[3], a[4]}, static_cast<int>(a[5]),
-                      {a[6], a[7], a[8], a[9]}, {a[10], a[11], a[12], a[13]}, a[14], a[15]});
+    result.push_back({static_cast<int>(a[0]),
+                      static_cast<int>(a[1]),
+                      {a[2], a[3], a[4]},
+                      static_cast<int>(a[5]),
+                      {a[6], a[7], a[8], a[9]},
+                      {a[10], a[11], a[12], a[13]},
+                      a[14],
+                      a[15]});
   }
   return result;
 }
@@ -47,15 +53,22 @@ std::vector<glm::vec3> random_points(glm::vec3 lower, glm::vec3 upper, int count
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> unit(0, 1);
   std::vector<glm::vec3> points;
-  for (int i = 0; i < count; ++i) points.push_back(lower + (upper - lower) * glm::vec3(unit(random), unit(random), unit(random)));
+  for (int i = 0; i < count; ++i)
+    points.push_back(lower + (upper - lower) * glm::vec3(unit(random), unit(random), unit(random)));
   return points;
 }
 
 TEST(MediumSampling, CellsCoverTheDomainAndItsFacesHoldTheOutermostNode) {
   const DeviceMedium medium = test::graded_domain({16, 24, 8}, [](glm::dvec3) { return 1.0; });
   std::vector<glm::vec3> points = random_points(glm::vec3(0), glm::vec3(16, 24, 8), 500, 3);
-  points.insert(points.end(), {{0, 0, 0}, {16, 24, 8}, {0.5f, 0.5f, 0.5f}, {15.5f, 23.5f, 7.5f}, {8.5f, 8.5f, 4}, {8.4999f, 16.5f, 7.9f},
-                               {-1e-3f, 25, 4}, {17, -1, 9}});
+  points.insert(points.end(), {{0, 0, 0},
+                               {16, 24, 8},
+                               {0.5f, 0.5f, 0.5f},
+                               {15.5f, 23.5f, 7.5f},
+                               {8.5f, 8.5f, 4},
+                               {8.4999f, 16.5f, 7.9f},
+                               {-1e-3f, 25, 4},
+                               {17, -1, 9}});
   const auto samples = sample(medium, points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Sample& s = samples[i];
@@ -64,7 +77,8 @@ TEST(MediumSampling, CellsCoverTheDomainAndItsFacesHoldTheOutermostNode) {
     const glm::ivec3 block(s.block % 2, s.block / 2 % 3, s.block / 6), node(s.node % 9, s.node / 9 % 9, s.node / 81);
     for (int axis = 0; axis < 3; ++axis) {
       ASSERT_LE(node[axis], 7);
-      ASSERT_LT(8 * block[axis] + node[axis], medium.frame.voxels[axis] - 1);  // the cell's upper node lies in the domain
+      ASSERT_LT(8 * block[axis] + node[axis],
+                medium.frame.voxels[axis] - 1);  // the cell's upper node lies in the domain
       ASSERT_GE(s.fraction[axis], 0.0f);
       ASSERT_LE(s.fraction[axis], 1.0f);
       const float expected = std::clamp(points[i][axis] - 0.5f, 0.0f, medium.frame.voxels[axis] - 1.0f);
@@ -117,7 +131,8 @@ TEST(MediumSampling, TheBodyThatStandsLaterInTheSceneOwnsAPoint) {
     for (int body = 1; body <= 3; ++body) {
       const float d = scene.bodies[body - 1].solid.signed_distance(points[i]);
       if (d < 0) expected = body;
-      near_surface = near_surface || std::abs(d) < 0.3f;  // trilinear interpolation rounds the box's edges by up to that
+      near_surface =
+          near_surface || std::abs(d) < 0.3f;  // trilinear interpolation rounds the box's edges by up to that
     }
     if (near_surface) continue;
     ASSERT_EQ(samples[i].region, expected) << i;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The steady operator and its preconditioner: right values, symmetric, positive.
+#include "host/transport/steady.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
 #include "host/transport/multigrid.h"
-#include "host/transport/steady.h"
 #include "tests/support/test_diffusion.h"
 #include "volumes/solid.h"
 
@@ -18,9 +19,11 @@ using I = cl::Buffer<std::int32_t>;
 
 MediumDescription mixed_scene(glm::ivec3 voxels = {24, 16, 16}) {
   MediumDescription scene = test::empty_domain(voxels, 1.0f);
-  scene.faces = {FaceBoundary::open, FaceBoundary::open, FaceBoundary::mirror, FaceBoundary::mirror, FaceBoundary::periodic, FaceBoundary::periodic};
+  scene.faces = {FaceBoundary::open,   FaceBoundary::open,     FaceBoundary::mirror,
+                 FaceBoundary::mirror, FaceBoundary::periodic, FaceBoundary::periodic};
   const glm::vec3 centre = 0.5f * glm::vec3(voxels);
-  test::add_body(scene, make_box(glm::vec3(voxels) - glm::vec3(4, -9, -9), test::at(centre)), test::make_material({.sigma_s = glm::vec3(1), .eta = 1.2f}));
+  test::add_body(scene, make_box(glm::vec3(voxels) - glm::vec3(4, -9, -9), test::at(centre)),
+                 test::make_material({.sigma_s = glm::vec3(1), .eta = 1.2f}));
   test::add_body(scene, make_sphere(5, test::at(centre)), test::make_material({.sigma_s = glm::vec3(1), .eta = 1.5f}));
   return scene;
 }
@@ -54,16 +57,18 @@ class Device {
   std::vector<double> apply(const std::vector<double>& u) {
     Level& level = levels_[0];
     put(level.x, u);
-    apply_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.x, level.y, sums_, level.blocks, channels_);
+    apply_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.x, level.y, sums_,
+                   level.blocks, channels_);
     return take(level.y);
   }
   /// x after `sweeps` of the smoother.
-  std::vector<double> smooth(const std::vector<double>& b, const std::vector<double>& x, int sweeps, int reverse, int from_zero) {
+  std::vector<double> smooth(const std::vector<double>& b, const std::vector<double>& x, int sweeps, int reverse,
+                             int from_zero) {
     Level& level = levels_[0];
     put(level.b, b);
     put(level.x, x);
-    smooth_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.b, level.x, level.y, level.blocks,
-                    channels_, sweeps, reverse, from_zero);
+    smooth_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.b, level.x, level.y,
+                    level.blocks, channels_, sweeps, reverse, from_zero);
     return take(level.y);
   }
   std::vector<double> v_cycle(const std::vector<double>& r) {
@@ -78,11 +83,14 @@ class Device {
     F t, loss, b, x, y;
     I neighbours, parent, octant;
   };
-  cl::Range global(const Level& level) const { return {static_cast<std::size_t>(level.blocks), static_cast<std::size_t>(channels_)}; }
+  cl::Range global(const Level& level) const {
+    return {static_cast<std::size_t>(level.blocks), static_cast<std::size_t>(channels_)};
+  }
   void put(F& buffer, const std::vector<double>& values) {
     std::vector<float> padded((stride_ + 512) * channels_, 0.0f);
     for (int c = 0; c < channels_; ++c) {
-      for (std::size_t i = 0; i < stride_; ++i) padded[c * (stride_ + 512) + i] = static_cast<float>(values[c * stride_ + i]);
+      for (std::size_t i = 0; i < stride_; ++i)
+        padded[c * (stride_ + 512) + i] = static_cast<float>(values[c * stride_ + i]);
     }
     session_.write(queue_, buffer, std::span<const float>(padded));
   }
@@ -97,16 +105,20 @@ class Device {
   void v_cycle(std::size_t index) {
     Level& level = levels_[index];
     if (index + 1 == levels_.size()) {
-      smooth_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.b, level.x, level.y, level.blocks, channels_, 2, 0, 1);
+      smooth_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.b, level.x, level.y,
+                      level.blocks, channels_, 2, 0, 1);
       return;
     }
     Level& coarse = levels_[index + 1];
-    smooth_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.b, level.y, level.x, level.blocks, channels_, 2, 0, 1);
-    restrict_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.b, level.x, level.parent, level.octant,
-                      coarse.b, level.blocks, coarse.blocks, channels_);
+    smooth_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.b, level.y, level.x,
+                    level.blocks, channels_, 2, 0, 1);
+    restrict_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.b, level.x,
+                      level.parent, level.octant, coarse.b, level.blocks, coarse.blocks, channels_);
     v_cycle(index + 1);
-    prolong_.enqueue(queue_, global(level), {1, 1}, coarse.y, level.parent, level.octant, level.x, level.blocks, coarse.blocks, channels_);
-    smooth_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.b, level.x, level.y, level.blocks, channels_, 2, 1, 0);
+    prolong_.enqueue(queue_, global(level), {1, 1}, coarse.y, level.parent, level.octant, level.x, level.blocks,
+                     coarse.blocks, channels_);
+    smooth_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.b, level.x, level.y,
+                    level.blocks, channels_, 2, 1, 0);
   }
 
   cl::Session& session_ = test::session();
@@ -165,7 +177,8 @@ TEST(SteadyOperator, IsSymmetric) {
 }
 
 TEST(SteadyOperator, AConstantLosesWhatIsAbsorbedAndEscapes) {
-  // Differences of equal values vanish exactly: A 1 is the loss alone, with no rounding of the large conductances in it.
+  // Differences of equal values vanish exactly: A 1 is the loss alone, with no rounding of the large conductances in
+  // it.
   DiffusionMedium medium = test::random_medium(mixed_scene(), 1e-3, 2e-3, 6);
   for (float& s_a : medium.s_a) s_a *= 1e-6f;
   for (BoundaryFace& face : medium.boundary) face.c[0] = 1e6f;

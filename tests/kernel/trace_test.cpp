@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps of rays: straight where the index is constant, curved by kick-drift-kick where it is graded, stopped at surfaces and
-// at the domain's faces.
+// Steps of rays: straight where the index is constant, curved by kick-drift-kick where it is graded, stopped at
+// surfaces and at the domain's faces.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,22 +26,30 @@ struct StepResult {
 };
 constexpr int kNone = 0, kSurface = 1, kFace = 2;
 
-std::vector<StepResult> step_once(const DeviceMedium& medium, const std::vector<test::ProbeRay>& rays, float step, float grace = 0) {
+std::vector<StepResult> step_once(const DeviceMedium& medium, const std::vector<test::ProbeRay>& rays, float step,
+                                  float grace = 0) {
   cl::Session& session = test::session();
   const cl::Program program = session.build(TURBID_TEST_KERNELS "/probe_medium.cl", medium.defines());
   cl::Kernel<cl::Buffer<RegionParams>, I, I, F, F, F, F, float, F, int> kernel(program, "probe_step");
   std::vector<float> in;
-  for (const auto& r : rays) in.insert(in.end(), {r.x.x, r.x.y, r.x.z, r.v.x, r.v.y, r.v.z, static_cast<float>(r.region), grace});
+  for (const auto& r : rays)
+    in.insert(in.end(), {r.x.x, r.x.y, r.x.z, r.v.x, r.v.y, r.v.z, static_cast<float>(r.region), grace});
   const F input = session.upload(in), output = session.zeros<float>(16 * rays.size());
   kernel.enqueue(session.march_queue(), {rays.size()}, {1}, medium.regions_buffer, medium.tile_map_buffer,
-                 medium.block_region_buffer, medium.distance_tiles, medium.index_tiles, medium.coefficient_tiles, input, step,
-                 output, static_cast<int>(rays.size()));
+                 medium.block_region_buffer, medium.distance_tiles, medium.index_tiles, medium.coefficient_tiles, input,
+                 step, output, static_cast<int>(rays.size()));
   const std::vector<float> out = session.read(session.march_queue(), output);
   std::vector<StepResult> result;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const float* a = out.data() + 16 * i;
-    result.push_back({static_cast<int>(a[0]), a[1], {a[2], a[3], a[4]}, static_cast<int>(a[5]), static_cast<int>(a[6]),
-                      {a[7], a[8], a[9]}, static_cast<int>(a[10]), {a[11], a[12], a[13]}});
+    result.push_back({static_cast<int>(a[0]),
+                      a[1],
+                      {a[2], a[3], a[4]},
+                      static_cast<int>(a[5]),
+                      static_cast<int>(a[6]),
+                      {a[7], a[8], a[9]},
+                      static_cast<int>(a[10]),
+                      {a[11], a[12], a[13]}});
   }
   return result;
 }
@@ -90,7 +98,8 @@ TEST(Rays, AreStraightAtConstantIndexAndStopAtTheDomainsFaces) {
 
 TEST(Rays, AStepEndsOnTheNearSideOfASurfaceAndKnowsWhatIsBeyond) {
   MediumDescription scene = test::empty_domain(glm::ivec3(32), 1.0f);
-  test::add_body(scene, make_sphere(10, test::at(glm::vec3(16))), test::make_material({.sigma_s = glm::vec3(0.1f), .eta = 1.5f}));
+  test::add_body(scene, make_sphere(10, test::at(glm::vec3(16))),
+                 test::make_material({.sigma_s = glm::vec3(0.1f), .eta = 1.5f}));
   const DeviceMedium medium = upload(scene);
   std::vector<test::ProbeRay> rays;
   std::mt19937 random(2);
@@ -111,8 +120,8 @@ TEST(Rays, AStepEndsOnTheNearSideOfASurfaceAndKnowsWhatIsBeyond) {
     ASSERT_EQ(s.event, kSurface);
     ASSERT_EQ(s.surface, 1);
     ASSERT_EQ(s.next_region, 1 - rays[i].region);
-    ASSERT_NEAR(s.length, 0.3, 0.15);                       // the sampled sphere lies within 0.03 voxel of the true one
-    ASSERT_LE(glm::distance(s.x, s.beyond), 2.2e-3f);       // a thousandth of a voxel on either side
+    ASSERT_NEAR(s.length, 0.3, 0.15);                  // the sampled sphere lies within 0.03 voxel of the true one
+    ASSERT_LE(glm::distance(s.x, s.beyond), 2.2e-3f);  // a thousandth of a voxel on either side
     const double before = glm::length(s.x - glm::vec3(16)) - 10, beyond = glm::length(s.beyond - glm::vec3(16)) - 10;
     ASSERT_NEAR(before, 0, 0.035);
     ASSERT_EQ(beyond > before, rays[i].region == 1);
@@ -122,7 +131,8 @@ TEST(Rays, AStepEndsOnTheNearSideOfASurfaceAndKnowsWhatIsBeyond) {
 TEST(Rays, NoStepPassesASurface) {
   // Random walks of steps with refraction: a ray's region must be that of the point where it stands.
   MediumDescription scene = test::empty_domain(glm::ivec3(32), 1.0f);
-  test::add_body(scene, make_sphere(11, test::at(glm::vec3(16))), test::make_material({.sigma_s = glm::vec3(0.1f), .eta = 1.3f}));
+  test::add_body(scene, make_sphere(11, test::at(glm::vec3(16))),
+                 test::make_material({.sigma_s = glm::vec3(0.1f), .eta = 1.3f}));
   test::add_body(scene, make_box({8, 5, 6}, test::at({14, 16, 17})), test::make_material({.eta = 1.6f}));
   const DeviceMedium medium = upload(scene);
   auto rays = random_rays(glm::vec3(32), 1, 400, 3);
@@ -134,7 +144,8 @@ TEST(Rays, NoStepPassesASurface) {
     const auto out = test::trace(medium, rays, 0.5f, steps);
     int checked = 0;
     for (const auto& ray : out) {
-      const float sphere = scene.bodies[0].solid.signed_distance(ray.x), box = scene.bodies[1].solid.signed_distance(ray.x);
+      const float sphere = scene.bodies[0].solid.signed_distance(ray.x),
+                  box = scene.bodies[1].solid.signed_distance(ray.x);
       if (std::abs(sphere) < 0.04f || std::abs(box) < 0.3f) continue;  // sampled and exact surfaces differ by that
       ASSERT_EQ(ray.region, box < 0 ? 2 : sphere < 0 ? 1 : 0);
       ++checked;
@@ -149,7 +160,8 @@ TEST(Rays, LongStepsThroughEmptyBlocksMeetTheSameSurface) {
   for (int scatters : {0, 1}) {
     MediumDescription scene = test::empty_domain(glm::ivec3(64, 32, 32), 1.0f);
     test::set_ambient(scene, test::make_material({.sigma_s = glm::vec3(scatters ? 0.1f : 0.0f)}));
-    test::add_body(scene, make_sphere(9, test::at({44, 16, 16})), test::make_material({.sigma_s = glm::vec3(scatters ? 0.1f : 0.0f), .eta = 1.5f}));
+    test::add_body(scene, make_sphere(9, test::at({44, 16, 16})),
+                   test::make_material({.sigma_s = glm::vec3(scatters ? 0.1f : 0.0f), .eta = 1.5f}));
     std::vector<test::ProbeRay> rays;
     for (int i = 0; i < 40; ++i) rays.push_back({{1, 8.2f + 0.37f * i, 15.3f}, {1, 0, 0}});
     out[scatters] = test::trace(upload(scene), rays, 0.5f, 4096);
@@ -164,7 +176,8 @@ TEST(Rays, LongStepsThroughEmptyBlocksMeetTheSameSurface) {
 
 TEST(Rays, AStartJustOutsideTheSampledSurfaceIsForgiven) {
   MediumDescription scene = test::empty_domain(glm::ivec3(32), 1.0f);
-  test::add_body(scene, make_sphere(10, test::at(glm::vec3(16))), test::make_material({.sigma_s = glm::vec3(0.1f), .eta = 1.5f}));
+  test::add_body(scene, make_sphere(10, test::at(glm::vec3(16))),
+                 test::make_material({.sigma_s = glm::vec3(0.1f), .eta = 1.5f}));
   const DeviceMedium medium = upload(scene);
   std::vector<test::ProbeRay> rays{{{5.95f, 16, 16}, {1, 0, 0}, 1}};
   rays[0].v = {0.1f, 0.99f, 0};  // its first step ends outside
@@ -174,8 +187,8 @@ TEST(Rays, AStartJustOutsideTheSampledSurfaceIsForgiven) {
   EXPECT_EQ(step_once(medium, rays, 0.5f, 1.5f)[0].event, kFace);
 }
 
-/// Largest | |v| / eta - 1 | at the end of paths of one length through a graded index, eta^2 quadratic in the position, so that
-/// the samples' interpolation is exact and the step alone errs.
+/// Largest | |v| / eta - 1 | at the end of paths of one length through a graded index, eta^2 quadratic in the position,
+/// so that the samples' interpolation is exact and the step alone errs.
 double speed_error(float step) {
   const auto eta_squared = [](glm::dvec3 x) { return 2.0 - glm::dot(x - 16.0, x - 16.0) / (24.0 * 24.0); };
   const DeviceMedium medium = test::graded_domain(glm::ivec3(32), eta_squared);

@@ -21,13 +21,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 bool has_line(const std::string& text, const std::string& start) {
   return text.starts_with(start) || text.find("\n" + start) != std::string::npos;
 }
 
-[[noreturn]] void become(const fs::path& folder, const std::vector<std::string>& command, const RunSettings& settings, int out, int err) {
+[[noreturn]] void become(const fs::path& folder, const std::vector<std::string>& command, const RunSettings& settings,
+                         int out, int err) {
   // Another process group: a Ctrl-C at the test runner's terminal is not ours to count.
   setpgid(0, 0);
   dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);

@@ -9,7 +9,7 @@
 namespace turbid::test {
 
 struct Outcome {
-  int status = -1;                     ///< exit status; 128 + number after a deadly signal
+  int status = -1;  ///< exit status; 128 + number after a deadly signal
   std::string out, err;
   double seconds_after_interrupt = 0;
   /// Lines of `err`.
@@ -19,7 +19,7 @@ struct Outcome {
 struct RunSettings {
   std::map<std::string, std::string> environment = {};  ///< added to the caller's; TURBID_... of the caller are removed
   std::size_t largest_file = 0;                         ///< limit of a written file [bytes]; 0: none
-  std::string interrupt_at = {};                    ///< SIGINT once standard error has a line that begins so
+  std::string interrupt_at = {};                        ///< SIGINT once standard error has a line that begins so
 };
 
 /// A folder to work in, removed when this object goes.

@@ -74,8 +74,12 @@ Run run(const MediumDescription& description, const LightList& lights, const Sol
   MediumVolume medium = voxelise(description);
   const SceneFeatures features = scene_features(medium, lights);
   Progress progress(Verbosity::quiet);
-  const SolverContext context{.session = session(), .progress = progress, .settings = settings, .features = features,
-                              .description = description, .surroundings = surroundings};
+  const SolverContext context{.session = session(),
+                              .progress = progress,
+                              .settings = settings,
+                              .features = features,
+                              .description = description,
+                              .surroundings = surroundings};
   const auto solver = make_solver(context);
   solver->prepare(medium);
   LightSolution solution = solver->light(lights);
@@ -86,8 +90,13 @@ ViewImage look_at(const Run& run, const LightList& lights, const Camera& camera,
                   const Surroundings& surroundings) {
   Progress progress(Verbosity::quiet);
   return render_view(session(),
-                     {.description = run.description, .medium = run.medium, .features = run.features,
-                      .solution = run.solution, .lights = lights, .camera = camera, .surroundings = surroundings,
+                     {.description = run.description,
+                      .medium = run.medium,
+                      .features = run.features,
+                      .solution = run.solution,
+                      .lights = lights,
+                      .camera = camera,
+                      .surroundings = surroundings,
                       .settings = settings},
                      progress);
 }
@@ -151,7 +160,8 @@ DeviceMedium graded_domain(glm::ivec3 voxels, const std::function<double(glm::dv
   return device;
 }
 
-Marched march(const MediumDescription& scene, const LightList& lights, const MarchSettings& settings, bool reversed_rays) {
+Marched march(const MediumDescription& scene, const LightList& lights, const MarchSettings& settings,
+              bool reversed_rays) {
   const MediumVolume volume = voxelise(scene);
   const DeviceMedium medium = upload_medium(session(), volume, scene_features(volume, lights));
   LightRays rays = start_rays(lights, volume, entry_surfaces(scene, volume, false), medium, settings, 0);
@@ -179,14 +189,14 @@ std::vector<ProbeRay> trace(const DeviceMedium& medium, const std::vector<ProbeR
   }
   F buffer = session().upload(packed);
   kernel.enqueue(session().march_queue(), {rays.size()}, {1}, medium.regions_buffer, medium.tile_map_buffer,
-                 medium.block_region_buffer, medium.distance_tiles, medium.index_tiles, medium.coefficient_tiles, buffer,
-                 step, steps, static_cast<int>(rays.size()));
+                 medium.block_region_buffer, medium.distance_tiles, medium.index_tiles, medium.coefficient_tiles,
+                 buffer, step, steps, static_cast<int>(rays.size()));
   const std::vector<float> out = session().read(session().march_queue(), buffer);
   std::vector<ProbeRay> result(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const float* at = out.data() + 10 * i;
-    result[i] = {{at[0], at[1], at[2]}, {at[3], at[4], at[5]}, static_cast<int>(at[6]), at[7], static_cast<int>(at[8]),
-                 static_cast<int>(at[9])};
+    result[i] = {{at[0], at[1], at[2]},   {at[3], at[4], at[5]},  static_cast<int>(at[6]), at[7],
+                 static_cast<int>(at[8]), static_cast<int>(at[9])};
   }
   return result;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Media, devices and runs for tests of kernels and of physics: small domains, analytic bodies, one shared OpenCL session.
+// Media, devices and runs for tests of kernels and of physics: small domains, analytic bodies, one shared OpenCL
+// session.
 #pragma once
 #include <functional>
 #include <string>
@@ -18,7 +19,9 @@ namespace turbid::test {
 /// The process's session on the default device.
 cl::Session& session();
 
-constexpr std::array<FaceBoundary, 6> all_faces(FaceBoundary kind) { return {kind, kind, kind, kind, kind, kind}; }
+constexpr std::array<FaceBoundary, 6> all_faces(FaceBoundary kind) {
+  return {kind, kind, kind, kind, kind, kind};
+}
 
 struct MaterialSpec {
   glm::vec3 sigma_s{0}, sigma_a{0}, emission{0};
@@ -27,7 +30,8 @@ struct MaterialSpec {
 Material make_material(const MaterialSpec&);
 
 /// An empty domain of voxels^3 whose lower corner is the origin unless `centred`.
-MediumDescription empty_domain(glm::ivec3 voxels, float voxel_size, FaceBoundary faces = FaceBoundary::open, bool centred = false);
+MediumDescription empty_domain(glm::ivec3 voxels, float voxel_size, FaceBoundary faces = FaceBoundary::open,
+                               bool centred = false);
 /// Fills the domain itself.
 void set_ambient(MediumDescription&, const Material&);
 void add_body(MediumDescription&, Solid, const Material&, SurfaceKind = SurfaceKind::sharp);
@@ -52,8 +56,8 @@ ViewImage look_at(const Run&, const LightList&, const Camera&, const ViewSetting
 Light sunlight(glm::vec3 direction, glm::vec3 irradiance = glm::vec3(1));
 Light point_light(glm::vec3 position, glm::vec3 power = glm::vec3(1));
 
-/// A domain filled with a graded index, eta^2 given at every node (positions in voxels), also beyond the domain's faces, so
-/// that central differences are undisturbed there. One region, one channel, nothing scatters.
+/// A domain filled with a graded index, eta^2 given at every node (positions in voxels), also beyond the domain's
+/// faces, so that central differences are undisturbed there. One region, one channel, nothing scatters.
 DeviceMedium graded_domain(glm::ivec3 voxels, const std::function<double(glm::dvec3)>& eta_squared);
 
 /// The march alone: tallies, deposits [tile][node][channel], and the rays it began with.
@@ -75,8 +79,8 @@ struct ProbeRay {
   int face = -1;     ///< domain face that stopped it
 };
 
-/// Traces rays with kernels/lib/trace.h, always along the refracted branch (the reflected one where reflection is total),
-/// until they stand on a face of the domain or `steps` are done.
+/// Traces rays with kernels/lib/trace.h, always along the refracted branch (the reflected one where reflection is
+/// total), until they stand on a face of the domain or `steps` are done.
 std::vector<ProbeRay> trace(const DeviceMedium&, const std::vector<ProbeRay>&, float step, int steps);
 
 /// log(coarse / fine) / log(refinement): error ~ C h^p.

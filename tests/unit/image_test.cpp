@@ -92,20 +92,17 @@ TEST_F(ImageFiles, ExrGivesBackEveryLayerInItsPrecision) {
                                    "scattered.B", "depth.Z", "N.X", "N.Y", "N.Z"}));
   for (int c = 0; c < file.spec.nchannels; ++c) {
     const std::string name = file.spec.channel_name(c);
-    const bool full = name == "depth.Z" || name.rfind("N.", 0) == 0;
-    EXPECT_EQ(file.spec.channelformat(c), full ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::HALF) << name;
+    EXPECT_EQ(file.spec.channelformat(c), OIIO::TypeDesc::FLOAT) << name;
   }
   const char* rgb[] = {"R", "G", "B", "A"};
   const char* xyz[] = {"X", "Y", "Z"};
-  const float half = 1.0f / 2048;  // half rounds to 11 bits
   for (int y = 0; y < 9; ++y)
     for (int x = 0; x < 17; ++x) {
       const std::size_t i = std::size_t(y) * 17 + x;
-      for (int c = 0; c < 4; ++c) EXPECT_NEAR(file.at(x, y, rgb[c]), image.colour[i][c], half * image.colour[i][c]);
+      for (int c = 0; c < 4; ++c) EXPECT_EQ(file.at(x, y, rgb[c]), image.colour[i][c]);
       for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(file.at(x, y, std::string("direct.") + rgb[c]), image.direct[i][c], half * image.direct[i][c]);
-        EXPECT_NEAR(file.at(x, y, std::string("scattered.") + rgb[c]), image.scattered[i][c],
-                    half * image.scattered[i][c]);
+        EXPECT_EQ(file.at(x, y, std::string("direct.") + rgb[c]), image.direct[i][c]);
+        EXPECT_EQ(file.at(x, y, std::string("scattered.") + rgb[c]), image.scattered[i][c]);
         EXPECT_EQ(file.at(x, y, std::string("N.") + xyz[c]), image.normal[i][c]);
       }
       EXPECT_EQ(file.at(x, y, "depth.Z"), image.depth[i]);
@@ -123,14 +120,14 @@ TEST_F(ImageFiles, ExrKeepsMetadata) {
   EXPECT_EQ(file.spec.get_string_attribute("compression"), "zip");
 }
 
-TEST_F(ImageFiles, ExrHoldsNoInfinityWhereRadianceExceedsHalfAndShowsNan) {
-  ViewImage image = constant_picture(4, 2, {1e9f, -1e9f, std::numeric_limits<float>::infinity(), 1});
+TEST_F(ImageFiles, ExrHoldsNoInfinityAndShowsNan) {
+  ViewImage image = constant_picture(4, 2, {1e9f, -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(), 1});
   image.scattered[0].r = std::nanf("");
   write_exr(image, {}, path("a.exr"));
   const File file = read(path("a.exr"));
-  EXPECT_EQ(file.at(1, 1, "R"), 65504);  // the largest half
-  EXPECT_EQ(file.at(1, 1, "G"), -65504);
-  EXPECT_EQ(file.at(1, 1, "B"), 65504);
+  EXPECT_EQ(file.at(1, 1, "R"), 1e9f);
+  EXPECT_EQ(file.at(1, 1, "G"), std::numeric_limits<float>::lowest());
+  EXPECT_EQ(file.at(1, 1, "B"), std::numeric_limits<float>::max());
   EXPECT_TRUE(std::isnan(file.at(0, 0, "scattered.R")));
   EXPECT_EQ(file.at(1, 0, "depth.Z"), 1e10f);
 }
@@ -244,7 +241,7 @@ TEST_F(ImageFiles, DescriptionListsChannelsRangesCountsAndMetadata) {
   const std::string text = describe_image(path("a.exr"));
   EXPECT_NE(text.find("a.exr: 4 x 2 pixels, 14 channels, openexr"), std::string::npos) << text;
   // 8 values, one NaN: mean (6 * 0.5 + 1.5) / 7.
-  EXPECT_NE(text.find("  R           half             0.5          1.5     0.642857        1        0"),
+  EXPECT_NE(text.find("  R           float            0.5          1.5     0.642857        1        0"),
             std::string::npos)
       << text;
   EXPECT_NE(text.find("depth.Z     float"), std::string::npos) << text;

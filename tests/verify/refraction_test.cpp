@@ -22,15 +22,18 @@ DeviceMedium upload(const MediumDescription& scene) {
 double luneburg_error(double step) {
   const double radius = 24;
   const glm::dvec3 centre(32, 32, 12);
-  const DeviceMedium medium = test::graded_domain({64, 64, 24}, [&](glm::dvec3 x) { return 2 - glm::dot(x - centre, x - centre) / (radius * radius); });
+  const DeviceMedium medium = test::graded_domain(
+      {64, 64, 24}, [&](glm::dvec3 x) { return 2 - glm::dot(x - centre, x - centre) / (radius * radius); });
   std::vector<test::ProbeRay> rays;
   for (double b : {-0.9, -0.6, -0.3, 0.0, 0.2, 0.5, 0.8, 0.95})
     rays.push_back({centre + radius * glm::dvec3(-std::sqrt(1 - b * b), b, 0), {1, 0, 0}});
   // In tau the path is a harmonic oscillation of frequency 1/R: all rays meet after pi R / 2.
-  const int steps = static_cast<int>(std::lround(kPi / 2 / step));
+  const int steps =
+      static_cast<int>(std::lround(kPi / 2 * std::sqrt(2.0) / step));  // a step is an arc at the largest index
   const double dtau = kPi / 2 * radius / steps;
   double worst = 0;
-  for (const auto& ray : test::trace(medium, rays, static_cast<float>(dtau / medium.region_params[0].tau_per_arc), steps)) {
+  for (const auto& ray :
+       test::trace(medium, rays, static_cast<float>(dtau / medium.region_params[0].tau_per_arc), steps)) {
     EXPECT_EQ(ray.face, -1);
     worst = std::max(worst, glm::length(glm::dvec3(ray.x) - (centre + glm::dvec3(radius, 0, 0))) / radius);
   }
@@ -40,14 +43,16 @@ double luneburg_error(double step) {
 TEST(LuneburgLens, FocusesParallelLightWithSecondOrder) {
   // Case 14: <= 4e-4 at steps of .05 R, order 2 +- .1.
   const double error[4] = {luneburg_error(0.1), luneburg_error(0.05), luneburg_error(0.025), luneburg_error(0.0125)};
-  RecordProperty("errors", std::to_string(1e6 * error[0]) + " " + std::to_string(1e6 * error[1]) + " " + std::to_string(1e6 * error[2]) + " " + std::to_string(1e6 * error[3]) + " ppm");
+  RecordProperty("errors", std::to_string(1e6 * error[0]) + " " + std::to_string(1e6 * error[1]) + " " +
+                               std::to_string(1e6 * error[2]) + " " + std::to_string(1e6 * error[3]) + " ppm");
   EXPECT_LE(error[1], 4e-4);
   for (int level = 0; level < 3; ++level) EXPECT_NEAR(test::observed_order(error[level], error[level + 1]), 2, 0.1);
 }
 
 TEST(LuneburgLens, VoxelisedAsABodyFocusesOnItsFarSide) {
-  // The whole chain: named index field, tiles, surface. At the surface the field has a kink (eta = 1 beyond), which central
-  // differences and trilinear samples smooth over a voxel: the focus is as sharp as that, 1/24 of the radius, at best.
+  // The whole chain: named index field, tiles, surface. At the surface the field has a kink (eta = 1 beyond), which
+  // central differences and trilinear samples smooth over a voxel: the focus is as sharp as that, 1/24 of the radius,
+  // at best.
   const float radius = 24;
   MediumDescription scene = test::empty_domain(glm::ivec3(64), 1.0f);
   Material lens = test::make_material({});
@@ -66,10 +71,13 @@ TEST(LuneburgLens, VoxelisedAsABodyFocusesOnItsFarSide) {
 }
 
 double fisheye_error(int n) {
-  // Wave of the grid, step and sampling, refined together: eta = 1.6 / (1 + r^2 / a^2), rays are circles (Maxwell 1854).
+  // Wave of the grid, step and sampling, refined together: eta = 1.6 / (1 + r^2 / a^2), rays are circles (Maxwell
+  // 1854).
   const double a = 0.3 * n, r0 = 0.15 * n;
   const glm::dvec3 centre(0.5 * n, 0.5 * n, 8);
-  const auto eta_squared = [&](glm::dvec3 x) { return std::pow(1.6 / (1 + glm::dot(x - centre, x - centre) / (a * a)), 2); };
+  const auto eta_squared = [&](glm::dvec3 x) {
+    return std::pow(1.6 / (1 + glm::dot(x - centre, x - centre) / (a * a)), 2);
+  };
   const DeviceMedium medium = test::graded_domain({n, n, 16}, eta_squared);
   const double middle = 0.5 * (r0 - a * a / r0), rho = 0.5 * (r0 + a * a / r0);
   std::vector<test::ProbeRay> rays{{centre + glm::dvec3(r0, 0, 0), {0, 0, 0}}};
@@ -86,7 +94,8 @@ double fisheye_error(int n) {
 TEST(MaxwellsFishEye, BendsRaysToCirclesWithSecondOrder) {
   // Case 16.
   const double error[3] = {fisheye_error(32), fisheye_error(64), fisheye_error(128)};
-  RecordProperty("errors", std::to_string(1e6 * error[0]) + " " + std::to_string(1e6 * error[1]) + " " + std::to_string(1e6 * error[2]) + " ppm");
+  RecordProperty("errors", std::to_string(1e6 * error[0]) + " " + std::to_string(1e6 * error[1]) + " " +
+                               std::to_string(1e6 * error[2]) + " ppm");
   EXPECT_NEAR(test::observed_order(error[0], error[1]), 2, 0.3);
   EXPECT_NEAR(test::observed_order(error[1], error[2]), 2, 0.3);
 }
@@ -104,7 +113,7 @@ double rod_error(int steps) {
                                static_cast<float>(tau / steps / medium.region_params[0].tau_per_arc), steps)[0];
   EXPECT_EQ(out.face, -1);
   EXPECT_NEAR(out.x.z, 2 + beta * tau, 2e-3);  // nothing pushes along the axis; 100 roundings at 80 voxels
-  return std::abs(out.x.x - 16) / rho0;          // on the axis after five quarter periods
+  return std::abs(out.x.x - 16) / rho0;        // on the axis after five quarter periods
 }
 
 TEST(GradientRod, HasTheKnownPeriodWithSecondOrder) {
@@ -116,9 +125,9 @@ TEST(GradientRod, HasTheKnownPeriodWithSecondOrder) {
 
 /// A domain whose upper half along z is glass, with a surface between two voxel layers.
 MediumDescription half_glass(SurfaceKind surface, float blur = 1) {
-  MediumDescription scene = test::empty_domain({32, 32, 48}, 1.0f);
+  MediumDescription scene = test::empty_domain({96, 16, 48}, 1.0f);
   scene.smoothing_voxels = blur;
-  test::add_body(scene, make_box({200, 200, 100}, test::at({16, 16, 74})), test::make_material({.eta = 1.5f}), surface);
+  test::add_body(scene, make_box({200, 200, 100}, test::at({48, 8, 74})), test::make_material({.eta = 1.5f}), surface);
   return scene;
 }
 
@@ -126,22 +135,26 @@ test::ProbeRay towards_surface(double degrees, bool from_glass) {
   const double angle = glm::radians(degrees), sign = from_glass ? -1 : 1, eta = from_glass ? 1.5 : 1;
   // Ten voxels before the surface at z = 24.
   const glm::dvec3 d(std::sin(angle), 0, sign * std::cos(angle));
-  const glm::dvec3 x = glm::dvec3(12, 16, 24) - d * (10 / std::cos(angle));
+  const glm::dvec3 x = glm::dvec3(2, 8, 24) - d * (10 / std::cos(angle));
   test::ProbeRay ray{x, eta * d, from_glass ? 1 : 0};
   ray.x.x = 2.0f;  // translated: the surface is flat
   return ray;
 }
 
-double angle_of(const test::ProbeRay& ray) { return glm::degrees(std::atan2(std::hypot(ray.v.x, ray.v.y), std::abs(ray.v.z))); }
+double angle_of(const test::ProbeRay& ray) {
+  return glm::degrees(std::atan2(std::hypot(ray.v.x, ray.v.y), std::abs(ray.v.z)));
+}
 
 TEST(FlatSurface, RefractsThirtyDegreesToNineteenPointFour) {
   // Case 15.
-  const auto out = test::trace(upload(half_glass(SurfaceKind::sharp)), {towards_surface(30, false), towards_surface(19.471221, true), towards_surface(45, true)}, 0.5f, 200);
+  const auto out =
+      test::trace(upload(half_glass(SurfaceKind::sharp)),
+                  {towards_surface(30, false), towards_surface(19.471221, true), towards_surface(45, true)}, 0.5f, 200);
   EXPECT_EQ(out[0].surfaces, 1);
   EXPECT_NEAR(angle_of(out[0]), 19.471221, 1e-4);  // the sampled normal of a plane is exact up to rounding
   EXPECT_NEAR(angle_of(out[1]), 30, 1e-4);
   EXPECT_NEAR(angle_of(out[2]), 45, 1e-4);  // total reflection
-  EXPECT_EQ(out[2].face, 1);
+  EXPECT_EQ(out[2].face, 5);
   EXPECT_GT(out[2].v.z, 0);
 }
 
@@ -159,7 +172,7 @@ TEST(BlurredSurface, RefractsBySnellAndReflectsEveryRayPastTheCriticalAngle) {
     expected.push_back(glm::degrees(std::asin(std::sin(glm::radians(degrees)) * 1.5)));
   }
   double sum = 0;
-  const auto out = test::trace(medium, rays, 0.5f, 60);
+  const auto out = test::trace(medium, rays, 0.5f, 80);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     EXPECT_EQ(out[i].v.z > 0, rays[i].v.z > 0);
     sum += std::pow(angle_of(out[i]) - expected[i], 2);
@@ -168,7 +181,7 @@ TEST(BlurredSurface, RefractsBySnellAndReflectsEveryRayPastTheCriticalAngle) {
   RecordProperty("rms_degrees", std::to_string(rms));
   EXPECT_LT(rms, 0.15);
   std::vector<test::ProbeRay> steep;
-  for (double degrees = 43; degrees < 80; degrees += 3) steep.push_back(towards_surface(degrees, true));
+  for (double degrees = 43; degrees < 72; degrees += 3) steep.push_back(towards_surface(degrees, true));
   for (const auto& ray : test::trace(medium, steep, 0.5f, 4096)) EXPECT_GT(ray.v.z, 0) << angle_of(ray);
 }
 
@@ -207,8 +220,41 @@ TEST(GlassBall, DeviatesRaysByTwiceTheDifferenceOfTheAngles) {
 
 TEST(GlassBall, ErrsWithSecondOrderInTheVoxel) {
   const double error[3] = {ball_error(32, 0.7), ball_error(64, 0.7), ball_error(128, 0.7)};
-  RecordProperty("rms_degrees", std::to_string(error[0]) + " " + std::to_string(error[1]) + " " + std::to_string(error[2]));
+  RecordProperty("rms_degrees",
+                 std::to_string(error[0]) + " " + std::to_string(error[1]) + " " + std::to_string(error[2]));
   EXPECT_GT(test::observed_order(error[0], error[2], 4), 1.7);
+}
+
+TEST(GlassBall, HoldsTotallyReflectedLightOnItsChords) {
+  // Inside a ball every chord has the length 2 R cos(theta), and theta stays: after the same arc each ray has met the
+  // surface as often as that says. Grazing light must neither leak out nor stick to the surface.
+  const float radius = 20;
+  MediumDescription scene = test::empty_domain(glm::ivec3(64), 1.0f);
+  const glm::vec3 centre(32.13f, 32.27f, 31.69f);
+  test::add_body(scene, make_sphere(radius, test::at(centre)), test::make_material({.eta = 1.5f}));
+  const DeviceMedium medium = upload(scene);
+  for (const double cosine : {0.6, 0.4, 0.2, 0.1, 0.05}) {
+    const double sine = std::sqrt(1 - cosine * cosine);
+    std::vector<test::ProbeRay> rays;
+    for (int i = 0; i < 24; ++i) {
+      // From the middle of a chord, in a plane turned about x.
+      const double turn = kPi * (i + 0.3) / 24;
+      const glm::dvec3 y(0, std::cos(turn), std::sin(turn));
+      rays.push_back({glm::dvec3(centre) + radius * sine * y, 1.5 * glm::dvec3(1, 0, 0), 1});
+    }
+    const auto out = test::trace(medium, rays, 0.5f, 400);
+    double worst = 0;
+    int lost = 0;
+    for (const auto& ray : out) {
+      lost += ray.region != 1;
+      worst = std::max(worst, std::abs(ray.surfaces / (ray.length / (2 * radius * cosine)) - 1));
+    }
+    RecordProperty("cosine_" + std::to_string(static_cast<int>(100 * cosine)),
+                   std::to_string(worst) + " worst, " + std::to_string(lost) + " lost");
+    EXPECT_EQ(lost, 0) << cosine;
+    EXPECT_LT(worst, 0.15)
+        << cosine;  // counts are whole numbers of five and more; the angle wanders by the normals' error
+  }
 }
 
 }  // namespace

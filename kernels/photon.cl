@@ -10,7 +10,8 @@
 //   varying coefficients: delta tracking (Woodcock et al. 1965) with a majorant M >= sigma_s + sigma_a per block: tentative
 //     collisions at the rate M; each takes the share sigma_a / M of the weight and scatters with probability
 //     sigma_s / (M - sigma_a), else nothing happens; the fluence tally is w l. Unbiased for the interpolated coefficients.
-// Steps end at voxel faces, so a segment counts in the one voxel that holds it.
+// Steps end at voxel faces, so a segment counts in the one voxel that holds it. One colour at a time: simpler than spectral
+// sampling, and every weight that started is found again exactly.
 #include "lib/ground.h"
 #include "lib/phase.h"
 #include "lib/random.h"

@@ -176,7 +176,7 @@ TEST(PhotonSphere, LetsOutAsMuchAsTheIndependentProgramSays) {
 TEST(PhotonFluence, FallsAroundAPointSourceAsInAnInfiniteMedium) {
   // Case 10: albedo .9, means over shells in mean free paths, exact transport. The domain ends after 12 of them. Voxels that a
   // shell cuts count by their share of it: with voxels of a quarter that leaves less than half a per cent.
-  constexpr int kSeeds = 6;
+  constexpr int kSeeds = 5;
   double mean[3][kSeeds] = {};
   for (int seed = 0; seed < kSeeds; ++seed) {
     MediumDescription scene = test::empty_domain(glm::ivec3(96), 0.25f, FaceBoundary::open, true);
@@ -187,10 +187,11 @@ TEST(PhotonFluence, FallsAroundAPointSourceAsInAnInfiniteMedium) {
       const glm::vec3 corner = glm::vec3(answer.voxel(at) - 48);
       const float middle = 0.25f * glm::length(corner + 0.5f);
       if (middle < 1.7f || middle > 7.3f) continue;
-      for (int i = 0; i < 64; ++i) {
-        const int shell = static_cast<int>(0.25f * glm::length(corner + (glm::vec3(i & 3, i >> 2 & 3, i >> 4) + 0.5f) * 0.25f));
+      const float fluence = static_cast<float>(answer.fluence(at));
+      for (int i = 0; i < 8; ++i) {
+        const int shell = static_cast<int>(0.25f * glm::length(corner + (glm::vec3(i & 1, i >> 1 & 1, i >> 2) + 0.5f) * 0.5f));
         if (shell != 2 && shell != 4 && shell != 6) continue;
-        mean[shell / 2 - 1][seed] += answer.fluence(at);
+        mean[shell / 2 - 1][seed] += fluence;
         volume[shell / 2 - 1] += 1;
       }
     }
@@ -302,7 +303,7 @@ TEST(PhotonErrors, FallAsOneOverTheRootOfThePhotons) {
   for (int level = 0; level < 4; ++level) {
     const std::int64_t count = 500 << (2 * level);
     double squares = 0, stated = 0;
-    constexpr int kSeeds = 16;
+    constexpr int kSeeds = 12;
     for (int seed = 0; seed < kSeeds; ++seed) {
       const auto answer = follow(test::slab(8, 1.25f, milk(1, 0)), photons(count, 100 + seed, 16), {source(TURBID_SOURCE_LAMBERT, kCentre)});
       squares += std::pow(answer.tallies().escaped_faces[5].value.x - expected, 2);
@@ -311,7 +312,7 @@ TEST(PhotonErrors, FallAsOneOverTheRootOfThePhotons) {
     logs[level][0] = 0.5 * std::log(squares / kSeeds);
     logs[level][1] = 0.5 * std::log(stated / kSeeds);
   }
-  // Slope over the three factors of 4. An rms of 16 values is uncertain by 18 %: 0.25 / 4.2 on the slope's outer points.
+  // Slope over the three factors of 4. An rms of 12 values is uncertain by 20 %: 0.28 / 4.2 on the slope's outer points.
   for (int kind : {0, 1}) {
     const double slope = (3 * (logs[3][kind] - logs[0][kind]) + (logs[2][kind] - logs[1][kind])) / (10 * std::log(4.0));
     EXPECT_NEAR(slope, -0.5, kind == 0 ? 0.15 : 0.05) << (kind == 0 ? "true error" : "stated error");

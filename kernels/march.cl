@@ -6,7 +6,7 @@
 // Attenuation (Beer and Lambert), sigma constant over a step of length ds:
 //     P' = P exp(-sigma_t ds);   the loss P - P' is scattered by the share sigma_s / sigma_t and absorbed else.
 // (Bernabei's Fig. 4 adds exponentials where it must multiply, and deposits P' where it must deposit the scattered loss.)
-#include "lib/deposit.h"
+#include "lib/ground.h"
 #include "lib/trace.h"
 #include "shared/march_params.h"
 
@@ -61,31 +61,14 @@ static void lose(const Medium* medium, Tally* tally, global long* deposit, int r
   tally->absorbed += loss;
 }
 
-// Bilinear splat of light that goes down from x onto the ground's map; `ground_rays` counts the rays per texel.
-static void light_ground(global long* ground, global int* ground_rays, const MarchParams* p, float3 x, float3 direction,
-                         Colour power) {
-  if (p->ground == 0 || direction.y > -1e-4f || x.y < p->ground_height) return;
-  const float t = (p->ground_height - x.y) / direction.y;
-  const float u = (x.x + t * direction.x - p->ground_origin[0]) / p->ground_texel - 0.5f;
-  const float v = (x.z + t * direction.z - p->ground_origin[1]) / p->ground_texel - 0.5f;
-  if (!(u >= 0.0f && v >= 0.0f && u < p->ground_size - 1 && v < p->ground_size - 1)) return;
-  const int iu = (int)u, iv = (int)v;
-  const float fu = u - iu, fv = v - iv;
-  atomic_inc(ground_rays + (int)(v + 0.5f) * p->ground_size + (int)(u + 0.5f));
-  for (int corner = 0; corner < 4; ++corner) {
-    const int du = corner & 1, dv = corner >> 1;
-    const float weight = (du ? fu : 1.0f - fu) * (dv ? fv : 1.0f - fv);
-    const size_t texel = (size_t)(iv + dv) * p->ground_size + iu + du;
-    add_power(ground + TURBID_CHANNELS * texel, weight * power, p->fixed_per_watt);
-  }
-}
-
 // Light that has left the media, for the view pass: on the ground where it lands, or, where rays stay straight, as the shadow
 // texel's transmittance.
 static void collect(global long* ground, global int* ground_rays, global long* transmitted, const MarchParams* p, int texel,
                     float3 x, float3 direction, Colour power) {
   if (!p->straight) {
-    light_ground(ground, ground_rays, p, x, direction, power);
+    const GroundMap map = {p->ground ? p->ground_size : 0, p->ground_height, (float2)(p->ground_origin[0], p->ground_origin[1]),
+                           p->ground_texel};
+    light_ground(ground, ground_rays, map, x, direction, power, p->fixed_per_watt);
   } else if (texel >= 0) {
     add_power(transmitted + TURBID_CHANNELS * texel, power, p->fixed_per_watt);
   }

@@ -18,7 +18,7 @@ void write_fluence_vdb(const FluenceVolume& result, const MediumVolume& medium, 
   initialise_vdb();
 
   using openvdb::Vec3SGrid;
-  /// value(block index, voxel, voxel's sigma_s) at the voxels where light is solved for.
+  /// value(index into the result, the voxel's sigma_s as the first flight sees it) at the voxels where light is solved for.
   const auto compose = [&](auto value) {
     return grid_from_blocks<Vec3SGrid>(result.frame, openvdb::Vec3s(0.0f), [&](glm::ivec3 block) {
       BlockContent<Vec3SGrid> content;
@@ -38,7 +38,7 @@ void write_fluence_vdb(const FluenceVolume& result, const MediumVolume& medium, 
         openvdb::Vec3s colours;
         for (int c = 0; c < 3; ++c)
           colours[c] = value(c * result.colour_stride() + static_cast<std::size_t>(index) * kBlockVoxels + voxel,
-                             coefficients[voxel].sigma_s[c]);
+                             coefficients[voxel].sigma_s[c] * (1.0f - coefficients[voxel].g * coefficients[voxel].g));
         content.leaf->setValueOnly(offset, colours);
         content.leaf->setActiveState(offset,
                                      medium.region(owner[voxel]).participates() || colours != openvdb::Vec3s(0.0f));

@@ -17,7 +17,9 @@ struct FluenceVolume {
   GridFrame frame;
   BlockGrid blocks;
   std::vector<float> fluence;   ///< multiply scattered light, integral of radiance over angle [W/scene unit^2]
-  std::vector<float> deposit;   ///< power that light rays scattered for the first time, per volume [W/scene unit^3]
+  std::vector<float> deposit;   ///< power that light rays scattered for the first time, per volume [W/scene unit^3]; their
+                                ///< fluence is deposit / ((1 - g^2) sigma_s): the forward peak g^2 counts as not scattered
+  std::vector<float> standard_error{};  ///< of the total fluence, Monte Carlo only [W/scene unit^2]; else empty
 
   std::size_t colour_stride() const { return static_cast<std::size_t>(blocks.count()) * blocks.voxels_per_block(); }
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads [solver] with its sub-tables march, lattice and steady, and [view]: names, defaults and ranges of settings.h.
+// Reads [solver] with its sub-tables march, lattice, steady and photon, and [view]: names, defaults and ranges of settings.h.
 #include "host/scene/parts.h"
 
 namespace turbid::scene {
@@ -56,6 +56,16 @@ SteadySettings read_steady(const TableReader& table, float tolerance) {
   return s;
 }
 
+PhotonSettings read_photon(const TableReader& table) {
+  table.allow({"photons", "error", "batches", "max_steps"});
+  PhotonSettings s;
+  s.photons = table.integer("photons", Range::closed(1, 1e12), s.photons);
+  s.error = table.number("error", Range::closed(0, 1), s.error);
+  s.batches = count(table, "batches", 2, 4096, s.batches);
+  s.max_steps = count(table, "max_steps", 1, 1 << 30, s.max_steps);
+  return s;
+}
+
 ViewSettings read_view(const TableReader& table) {
   table.allow({"step_in_voxels", "max_steps", "max_branches", "min_weight"});
   ViewSettings s;
@@ -73,8 +83,8 @@ void read_settings(Reading& reading, const toml::table& root) {
   SolverSettings& s = reading.scene.solver;
   const toml::table* node = table_at(root, "solver");
   const TableReader solver(node ? *node : kNone, "[solver]", effective.section("[solver]"));
-  solver.allow({"name", "tolerance", "seed", "march", "lattice", "steady"});
-  s.solver = solver.word("name", {"steady", "lattice"}, s.solver);
+  solver.allow({"name", "tolerance", "seed", "march", "lattice", "steady", "photon"});
+  s.solver = solver.word("name", {"steady", "lattice", "photon"}, s.solver);
   const float tolerance = solver.number("tolerance", Range::closed(1e-6, 0.1), s.steady.tolerance);
   s.seed = static_cast<std::uint64_t>(solver.integer("seed", Range::at_least(0), static_cast<std::int64_t>(s.seed)));
   s.march = read_march({sub_table(solver, "march"), "[solver.march]", effective.section("[solver.march]")});
@@ -82,6 +92,7 @@ void read_settings(Reading& reading, const toml::table& root) {
                            tolerance);
   s.steady =
       read_steady({sub_table(solver, "steady"), "[solver.steady]", effective.section("[solver.steady]")}, tolerance);
+  s.photon = read_photon({sub_table(solver, "photon"), "[solver.photon]", effective.section("[solver.photon]")});
   node = table_at(root, "view");
   reading.scene.view = read_view({node ? *node : kNone, "[view]", effective.section("[view]")});
 }

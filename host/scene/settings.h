@@ -32,6 +32,16 @@ struct SteadySettings {
   int smoothing_sweeps = 2;         ///< red-black sweeps per block with frozen interface; 1..8
 };
 
+struct PhotonSettings {
+  std::int64_t photons = 10'000'000;  ///< followed over all colours, at the most; >= 1
+  float error = 0.0f;               ///< stop when the mean relative standard error of the fluence, weighted by the fluence, is
+                                    ///< below this [-], in [0, 1]; 0: follow all photons
+  int batches = 32;                 ///< independent parts whose spread gives the standard errors; 2..4096
+  int max_steps = 1 << 20;          ///< a photon still inside after this many voxels, collisions and surfaces is in flight; >= 1
+  std::string checkpoint;           ///< file to go on from after an interruption; empty: none. Not a scene key
+  float checkpoint_seconds = 5.0f;  ///< time between two writings of it [s]. Not a scene key
+};
+
 struct ViewSettings {
   float step_in_voxels = 0.5f;      ///< arc length of one gathering step / voxel size [-], in (0, 1]
   int max_steps = 4096;             ///< steps of one view path; >= 1
@@ -40,11 +50,12 @@ struct ViewSettings {
 };
 
 struct SolverSettings {
-  std::string solver = "steady";    ///< "steady" or "lattice"
+  std::string solver = "steady";    ///< "steady", "lattice" or "photon"
   MarchSettings march;
   LatticeSettings lattice;
   SteadySettings steady;
-  std::uint64_t seed = 0;           ///< offset of the regular ray grid; the same seed gives the same bits
+  PhotonSettings photon;
+  std::uint64_t seed = 0;           ///< of the photons, and offset of the regular ray grid; the same seed gives the same bits
 };
 
 }  // namespace turbid

@@ -60,6 +60,11 @@ struct DiffusionMedium {
 /// Conductances T[channel][axis][block][voxel] between active voxels, 0 elsewhere.
 std::vector<float> face_conductances(const DiffusionMedium&);
 
+/// For each region the smallest s per voxel that diffusion is computed with; < 0: the region takes no part.
+std::vector<float> floors_of_s(const MediumVolume&);
+/// Blocks that hold a voxel of a region that takes part.
+BlockGrid active_blocks(const MediumVolume&, const std::vector<float>& floors);
+
 /// With one channel, coefficients and emission are those of `first_colour` (a grey scene's brightest).
 /// A clear region that only scattering regions enclose takes part as a void, with s floored at 0.1 or one mean free path per
 /// crossing, whichever is more (numerics section 4): the light that diffuses into it comes out again.

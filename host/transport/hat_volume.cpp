@@ -13,6 +13,7 @@ namespace {
 constexpr int kEdge = 8, kVoxels = 512;
 constexpr int kNodes = kEdge + 2;   // a block's voxels with one more on each side
 constexpr int kSamples = 4;         // per cell and axis
+constexpr int kBoxSamples = 8;      // per voxel and axis
 
 /// Distances of all bodies at the nodes around one block.
 struct Nodes {
@@ -46,17 +47,23 @@ bool uniform(const Nodes& nodes, int corner) {
   return true;
 }
 
-void fill_block(const MediumVolume& medium, const DiffusionMedium& diffusion, int block, float* out) {
-  const glm::ivec3 lower = kEdge * diffusion.blocks.coordinates(block);
-  Nodes nodes;
-  nodes.body.resize(medium.region_count());
+/// Distances of all bodies around one block; true if a surface may pass.
+bool read_nodes(const MediumVolume& medium, glm::ivec3 lower, Nodes& nodes) {
   bool mixed = false;
+  nodes.body.resize(medium.region_count());
   for (int r = 1; r < medium.region_count(); ++r) {
     nodes.body[r].resize(kNodes * kNodes * kNodes);
     medium.read_signed_distance(r, lower - 1, glm::ivec3(kNodes), nodes.body[r]);
     const auto [low, high] = std::minmax_element(nodes.body[r].begin(), nodes.body[r].end());
     mixed |= *low < 0.0f && *high >= 0.0f;
   }
+  return mixed;
+}
+
+void fill_block(const MediumVolume& medium, const DiffusionMedium& diffusion, int block, float* out) {
+  const glm::ivec3 lower = kEdge * diffusion.blocks.coordinates(block);
+  Nodes nodes;
+  const bool mixed = read_nodes(medium, lower, nodes);
   const std::int16_t* region = diffusion.region.data() + block * std::size_t{kVoxels};
   if (!mixed) {
     for (int v = 0; v < kVoxels; ++v) out[v] = 1.0f;
@@ -93,7 +100,40 @@ void fill_block(const MediumVolume& medium, const DiffusionMedium& diffusion, in
   for (int v = 0; v < kVoxels; ++v) out[v] = std::max(out[v], 0.02f);
 }
 
+/// Volume of a voxel's part in region r: the eight cells that meet at its centre hold an eighth of it each.
+float box_volume(const Nodes& nodes, glm::ivec3 voxel, int r) {
+  bool whole = true;
+  for (int k = 0; k < 8 && whole; ++k)
+    whole = uniform(nodes, Nodes::index(voxel.x + (k & 1), voxel.y + (k >> 1 & 1), voxel.z + (k >> 2)));
+  if (whole) return 1.0f;
+  int inside = 0;
+  for (int i = 0; i < kBoxSamples * kBoxSamples * kBoxSamples; ++i) {
+    const glm::vec3 place = (glm::vec3(i % kBoxSamples, i / kBoxSamples % kBoxSamples, i / (kBoxSamples * kBoxSamples)) + 0.5f) /
+                                static_cast<float>(kBoxSamples) + 0.5f;  // from the node before the voxel's own
+    const glm::ivec3 cell(place);
+    const glm::vec3 f = place - glm::vec3(cell);
+    inside += region_at(nodes, Nodes::index(voxel.x + cell.x, voxel.y + cell.y, voxel.z + cell.z), f.x, f.y, f.z) == r;
+  }
+  return std::max(static_cast<float>(inside) / (kBoxSamples * kBoxSamples * kBoxSamples), 0.02f);
+}
+
 }  // namespace
+
+std::vector<float> box_volumes(const MediumVolume& medium, const BlockGrid& blocks, const std::vector<std::int16_t>& region) {
+  std::vector<float> result(region.size(), 0.0f);
+  parallel_ranges(blocks.count(), [&](int begin, int end) {
+    Nodes nodes;
+    for (int block = begin; block < end; ++block) {
+      const bool mixed = read_nodes(medium, kEdge * blocks.coordinates(block), nodes);
+      for (int v = 0; v < kVoxels; ++v) {
+        const std::size_t at = block * std::size_t{kVoxels} + v;
+        if (region[at] < 0) continue;
+        result[at] = mixed ? box_volume(nodes, {v % kEdge, v / kEdge % kEdge, v / (kEdge * kEdge)}, region[at]) : 1.0f;
+      }
+    }
+  });
+  return result;
+}
 
 std::vector<float> hat_volumes(const MediumVolume& medium, const DiffusionMedium& diffusion) {
   std::vector<float> result(diffusion.stride());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much of its region each voxel's trilinear weight covers, so that deposits near a surface turn into densities.
+// How much of its region each voxel, or its trilinear weight, covers: sums near a surface turn into densities.
 #pragma once
 #include <vector>
 
@@ -10,5 +10,8 @@ namespace turbid {
 /// [block][voxel]: integral over the voxel's own region of its trilinear (hat) weight, in voxels; 1 away from surfaces, in
 /// [0.02, 1] near them. Power spread with these weights divided by them is a power density without a staircase.
 std::vector<float> hat_volumes(const MediumVolume&, const DiffusionMedium&);
+
+/// [block][voxel]: volume of the voxel's part in its own region [voxels], in [0.02, 1]; 0 where `region` is -1.
+std::vector<float> box_volumes(const MediumVolume&, const BlockGrid&, const std::vector<std::int16_t>& region);
 
 }  // namespace turbid

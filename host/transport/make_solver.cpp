@@ -4,6 +4,7 @@
 
 #include "host/base/errors.h"
 #include "host/transport/lattice_solver.h"
+#include "host/transport/photon_solver.h"
 #include "host/transport/solver.h"
 #include "host/transport/steady_solver.h"
 
@@ -20,7 +21,8 @@ std::unique_ptr<TransportSolver> make(const SolverContext& context) {
   return std::make_unique<Solver>(context);
 }
 
-constexpr std::array<Row, 2> kSolvers{{{"steady", make<SteadySolver>}, {"lattice", make<LatticeSolver>}}};
+constexpr std::array<Row, 3> kSolvers{
+    {{"steady", make<SteadySolver>}, {"lattice", make<LatticeSolver>}, {"photon", make<PhotonSolver>}}};
 
 }  // namespace
 

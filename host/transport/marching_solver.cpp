@@ -11,7 +11,7 @@ namespace turbid {
 
 double EnergyBalance::imbalance() const {
   double worst = 0;
-  const glm::dvec3 rest = missed + reflected + absorbed + absorbed_opaque + escaped + in_flight;
+  const glm::dvec3 rest = missed + reflected + absorbed + absorbed_opaque + escaped + in_flight + roulette;
   for (int c = 0; c < 3; ++c) {
     if (emitted[c] > 0) worst = std::max(worst, std::abs(emitted[c] - rest[c]) / emitted[c]);
   }

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@
 
 namespace turbid {
 
-/// Where the light's power went, per colour [W]. emitted = missed + reflected + absorbed + escaped + in_flight + residual.
+/// Where the light's power went, per colour [W]. emitted = missed + reflected + absorbed + absorbed_opaque + escaped +
+/// in_flight + roulette.
 struct EnergyBalance {
   glm::dvec3 emitted{0};         ///< by the lights (what is aimed at the medium) and by emitting media
   glm::dvec3 missed{0};          ///< never met a medium
@@ -27,6 +29,7 @@ struct EnergyBalance {
   glm::dvec3 escaped{0};         ///< left the media or the domain for good, in total
   std::array<glm::dvec3, 6> escaped_faces{};  ///< of it, towards -x, +x, -y, +y, -z, +z
   glm::dvec3 in_flight{0};       ///< paths cut by max_steps, max_bounces or min_power; deposits without a voxel
+  glm::dvec3 roulette{0};        ///< photon solver: taken by Russian roulette less what it gave, zero on average
   double imbalance() const;      ///< largest |emitted - sum of the rest| / emitted over the colours
 };
 
@@ -48,6 +51,23 @@ struct ShadowMap {
                                          ///< it is on the ground's map instead
 };
 
+/// A Monte Carlo estimate with its standard error, per colour.
+struct Estimate {
+  glm::dvec3 value{0}, error{0};
+};
+
+/// What the photon solver counts, each with its standard error [W].
+struct PhotonTallies {
+  std::uint64_t photons = 0;     ///< followed, over all colours
+  int batches = 0;               ///< independent parts that the standard errors come from
+  Estimate reflected;            ///< specular, where light enters
+  Estimate absorbed_opaque, in_flight, roulette;
+  Estimate absorbed, escaped, unscattered;   ///< totals of the parts below
+  std::vector<Estimate> absorbed_regions;    ///< by the medium of each region
+  std::array<Estimate, 6> escaped_faces{};     ///< towards -x, +x, -y, +y, -z, +z
+  std::array<Estimate, 6> unscattered_faces{}; ///< of it, what never scattered
+};
+
 struct SolverReport {
   std::string solver;
   int channels = 3;
@@ -57,6 +77,7 @@ struct SolverReport {
   double error_estimate = 0;     ///< relative error of the fluence that the solver's own stopping test gives
   std::size_t active_blocks = 0, active_voxels = 0;
   EnergyBalance energy;
+  std::optional<PhotonTallies> photon;   ///< photon solver only
 };
 
 struct DeviceMedium;
@@ -90,7 +111,7 @@ struct SolverContext {
   Surroundings surroundings;
 };
 
-/// The one table of solvers: "steady", "lattice". Throws InputError for another name.
+/// The one table of solvers: "steady", "lattice", "photon". Throws InputError for another name.
 std::unique_ptr<TransportSolver> make_solver(const SolverContext&);
 std::vector<std::string> solver_names();
 

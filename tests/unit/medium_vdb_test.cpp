@@ -135,7 +135,9 @@ TEST_F(MediumVdb, FluenceIsWrittenBesideTheMedium) {
   }
   write_fluence_vdb(result, medium, path("f.vdb"), "mm");
   const glm::vec3 fluence = value_at(path("f.vdb"), "fluence", medium.frame().centre_of(voxel));
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(fluence[c], 1.0f + static_cast<float>(c) + 8.0f / own.sigma_s[c], 1e-4f);
+  // The first flight counts the forward peak g^2 as not scattered.
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(fluence[c], 1.0f + static_cast<float>(c) + 8.0f / (own.sigma_s[c] * (1 - own.g * own.g)), 1e-4f);
   EXPECT_NEAR(value_at(path("f.vdb"), "deposit", medium.frame().centre_of(voxel)).y, 8.0f, 1e-4f);
   EXPECT_NE(describe_vdb(path("f.vdb")).find("W/mm^2"), std::string::npos);
   EXPECT_NE(describe_vdb(path("f.vdb")).find("sigma_a: "), std::string::npos);

@@ -40,10 +40,24 @@ void add_device_option(CLI::App& command, std::string& device) {
 
 void add_solver_options(CLI::App& command, SceneOptions& options) {
   add_device_option(command, options.device);
-  command.add_option("--solver", options.overrides.solver, "How to solve for the diffuse light: steady or lattice")
+  command.add_option("--solver", options.overrides.solver, "How to solve for the scattered light: steady, lattice or photon (Monte Carlo)")
       ->type_name("NAME");
   command.add_option("--seed", options.overrides.seed, "Shifts the grid of light rays; the same seed, the same bits")
       ->type_name("N");
+  // Written as overrides, so that a bad value is told like that of any other key.
+  const auto photon_key = [&](const char* flag, const char* key, const char* help, const char* type) {
+    command
+        .add_option_function<std::string>(
+            flag, [&options, key](const std::string& value) { options.overrides.settings.push_back(key + value); }, help)
+        ->type_name(type);
+  };
+  photon_key("--photons", "solver.photon.photons=", "Photon solver: photons to follow, over all colours", "N");
+  photon_key("--error", "solver.photon.error=",
+             "Photon solver: stop when the fluence's mean relative standard error is below this", "E");
+  command
+      .add_option("--checkpoint", options.checkpoint,
+                  "Photon solver: file that is written every few seconds, and gone on from if it is there")
+      ->type_name("FILE");
 }
 
 void remember_command_line(int argc, const char* const* argv) {

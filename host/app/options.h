@@ -20,6 +20,7 @@ struct SceneOptions : TalkOptions {
   std::string scene;
   SceneOverrides overrides;
   std::string device;
+  std::string checkpoint;  ///< of the photon solver; empty: none
 };
 
 void add_json_option(CLI::App& command, TalkOptions&);
@@ -27,7 +28,7 @@ void add_talk_options(CLI::App& command, TalkOptions&);
 /// SCENE, -D and --resolution, with the talk options.
 void add_scene_options(CLI::App& command, SceneOptions&);
 void add_device_option(CLI::App& command, std::string& device);
-/// --device, --solver and --seed.
+/// --device, --solver, --seed, and for the photon solver --photons, --error and --checkpoint.
 void add_solver_options(CLI::App& command, SceneOptions&);
 
 /// The whole command line as one text, for reports; set once by main.

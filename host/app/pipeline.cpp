@@ -11,6 +11,7 @@ namespace turbid::app {
 VoxelisedScene read_and_voxelise(const SceneOptions& options, Progress& progress) {
   progress.stage("read");
   Scene scene = read_scene(options.scene, options.overrides);
+  scene.solver.photon.checkpoint = options.checkpoint;
   progress.stage("voxelise");
   MediumVolume medium = voxelise(scene.medium, [&](double fraction) { progress.update(fraction); });
   progress.stage("survey");

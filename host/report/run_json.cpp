@@ -22,9 +22,33 @@ Json energy_part(const EnergyBalance& e, double allowed) {
           {"escaped", colours(e.escaped)},
           {"escaped_faces", faces},
           {"in_flight", colours(e.in_flight)},
+          {"roulette", colours(e.roulette)},
           {"imbalance", e.imbalance()},
           {"allowed_imbalance", allowed},
           {"balanced", e.imbalance() <= allowed}};
+}
+
+Json estimate(const Estimate& e) { return {{"value", colours(e.value)}, {"standard_error", colours(e.error)}}; }
+
+Json photon_part(const PhotonTallies& t) {
+  Json faces, unscattered, regions = Json::array();
+  for (std::size_t face = 0; face < 6; ++face) {
+    faces[kFaces[face]] = estimate(t.escaped_faces[face]);
+    unscattered[kFaces[face]] = estimate(t.unscattered_faces[face]);
+  }
+  for (const Estimate& region : t.absorbed_regions) regions.push_back(estimate(region));
+  return {{"photons", t.photons},
+          {"batches", t.batches},
+          {"reflected_at_entry", estimate(t.reflected)},
+          {"absorbed", estimate(t.absorbed)},
+          {"absorbed_regions", regions},
+          {"absorbed_by_opaque", estimate(t.absorbed_opaque)},
+          {"escaped", estimate(t.escaped)},
+          {"escaped_faces", faces},
+          {"unscattered", estimate(t.unscattered)},
+          {"unscattered_faces", unscattered},
+          {"in_flight", estimate(t.in_flight)},
+          {"roulette", estimate(t.roulette)}};
 }
 
 Json seconds_part(const std::vector<StageTime>& times) {
@@ -80,6 +104,7 @@ std::string report_json(const RunReport& r) {
                        {"samples", camera.samples},
                        {"exposure_stops", *r.exposure}};
   }
+  if (s.photon) json["photon"] = photon_part(*s.photon);
   json["seconds"] = seconds_part(r.times);
   json["peak_memory_bytes"] = peak_memory();
   json["checksums"] = named(r.checksums);

@@ -29,8 +29,18 @@ std::string energy_table(const EnergyBalance& e, double allowed) {
   text += row("escaped", e.escaped);
   for (std::size_t face = 0; face < 6; ++face) text += row(kTowards[face], e.escaped_faces[face]);
   text += row("in flight", e.in_flight);
+  if (e.roulette != glm::dvec3(0)) text += row("taken by roulette", e.roulette);
   text += line("  imbalance %.2g (up to %.0e is allowed)\n", e.imbalance(), allowed);
   return text;
+}
+
+/// What the photon solver knows of its own scatter.
+std::string photon_table(const PhotonTallies& t) {
+  std::string text = "standard errors [W]\n";
+  text += row("absorbed", t.absorbed.error);
+  text += row("escaped", t.escaped.error);
+  text += row("escaped unscattered", t.unscattered.error);
+  return text + row("(its power)", t.unscattered.value);
 }
 
 std::string with_commas(std::size_t number) {
@@ -50,8 +60,13 @@ std::string report_text(const RunReport& r, bool brief) {
   text += "device     " + r.device.device.label() + "\n";
   text += line("grid       %d x %d x %d voxels of %g %s, %s of them scatter\n", frame.voxels.x, frame.voxels.y,
                frame.voxels.z, frame.voxel_size, r.scene.unit.c_str(), with_commas(r.survey.active_voxels).c_str());
-  text += line("solver     %s: %s rays in %d batches, %d iterations, estimated error %.2g\n", s.solver.c_str(),
-               with_commas(s.rays).c_str(), s.march_batches, s.iterations, s.error_estimate);
+  if (s.photon) {
+    text += line("solver     photon: %s photons in %d batches, mean relative standard error of the fluence %.2g\n",
+                 with_commas(s.photon->photons).c_str(), s.photon->batches, s.error_estimate);
+  } else {
+    text += line("solver     %s: %s rays in %d batches, %d iterations, estimated error %.2g\n", s.solver.c_str(),
+                 with_commas(s.rays).c_str(), s.march_batches, s.iterations, s.error_estimate);
+  }
   text += "times     ";
   double total = 0;
   for (const StageTime& stage : r.times) {
@@ -59,7 +74,9 @@ std::string report_text(const RunReport& r, bool brief) {
     total += stage.seconds;
   }
   text += line(" in all %.2f s\n", total);
-  return text + energy_table(s.energy, r.allowed_imbalance);
+  text += energy_table(s.energy, r.allowed_imbalance);
+  if (s.photon) text += photon_table(*s.photon);
+  return text;
 }
 
 }  // namespace turbid

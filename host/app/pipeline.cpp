@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "host/base/errors.h"
+#include "host/report/checksum.h"
 
 namespace turbid::app {
 
@@ -34,6 +35,22 @@ LightSolution solve_light(cl::Session& session, const VoxelisedScene& in, Progre
   LightSolution solution = solver->light(in.scene.lights);
   progress.finish();
   return solution;
+}
+
+RunReport run_report(const VoxelisedScene& in, const cl::DeviceChoice& choice, const LightSolution& solution,
+                     const Progress& progress) {
+  return {.command_line = command_line(),
+          .scene = in.scene,
+          .features = in.features,
+          .survey = in.survey,
+          .device = choice,
+          .solver = solution.report,
+          .allowed_imbalance = kAllowedImbalance,
+          .times = progress.times(),
+          .warnings = progress.warnings(),
+          .outputs = {},
+          .checksums = {{"fluence", checksum(solution.volume.fluence, solution.volume.deposit)}},
+          .exposure = {}};
 }
 
 void require_balance(const EnergyBalance& energy) {

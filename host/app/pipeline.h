@@ -7,6 +7,7 @@
 #include "host/app/options.h"
 #include "host/base/progress.h"
 #include "host/report/medium_survey.h"
+#include "host/report/run_report.h"
 #include "host/scene/features.h"
 #include "host/scene/scene.h"
 #include "host/transport/solver.h"
@@ -29,6 +30,9 @@ struct VoxelisedScene {
 VoxelisedScene read_and_voxelise(const SceneOptions&, Progress&);
 
 LightSolution solve_light(cl::Session&, const VoxelisedScene&, Progress&);
+
+/// What every run reports; the command adds its outputs, checksums of its own and the exposure. Refers to its arguments.
+RunReport run_report(const VoxelisedScene&, const cl::DeviceChoice&, const LightSolution&, const Progress&);
 
 /// Throws VerificationError if the run lost or made energy.
 void require_balance(const EnergyBalance&);

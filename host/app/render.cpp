@@ -72,19 +72,10 @@ void render(const RenderOptions& options) {
   write_exr(image, metadata_of(in, choice.device, solution.report, progress), output.exr);
   write_png_preview(image, exposure, output.png);
   progress.finish();
-  const RunReport report{.command_line = command_line(),
-                         .scene = in.scene,
-                         .features = in.features,
-                         .survey = in.survey,
-                         .device = choice,
-                         .solver = solution.report,
-                         .allowed_imbalance = kAllowedImbalance,
-                         .times = progress.times(),
-                         .warnings = progress.warnings(),
-                         .outputs = {{"exr", output.exr}, {"png", output.png}, {"report", output.report}},
-                         .checksums = {{"fluence", checksum(solution.volume.fluence, solution.volume.deposit)},
-                                       {"picture", checksum(image.colour, image.direct, image.scattered)}},
-                         .exposure = exposure};
+  RunReport report = run_report(in, choice, solution, progress);
+  report.outputs = {{"exr", output.exr}, {"png", output.png}, {"report", output.report}};
+  report.checksums.emplace_back("picture", checksum(image.colour, image.direct, image.scattered));
+  report.exposure = exposure;
   const std::string json = report_json(report);
   write_file_atomically(output.report, json.data(), json.size());
   print(options.json ? json : report_text(report, options.quiet));

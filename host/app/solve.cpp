@@ -6,7 +6,6 @@
 #include "host/app/options.h"
 #include "host/app/output.h"
 #include "host/app/pipeline.h"
-#include "host/report/checksum.h"
 #include "host/report/run_report.h"
 
 namespace turbid::app {
@@ -31,18 +30,8 @@ void solve(const SolveOptions& options) {
   write_fluence_vdb(solution.volume, in.medium, output.string(), in.scene.unit);
   progress.finish();
 
-  const RunReport report{.command_line = command_line(),
-                         .scene = in.scene,
-                         .features = in.features,
-                         .survey = in.survey,
-                         .device = choice,
-                         .solver = solution.report,
-                         .allowed_imbalance = kAllowedImbalance,
-                         .times = progress.times(),
-                         .warnings = progress.warnings(),
-                         .outputs = {{"vdb", output.string()}},
-                         .checksums = {{"fluence", checksum(solution.volume.fluence, solution.volume.deposit)}},
-                         .exposure = {}};
+  RunReport report = run_report(in, choice, solution, progress);
+  report.outputs = {{"vdb", output.string()}};
   print(options.json ? report_json(report) : report_text(report, options.quiet));
   require_balance(solution.report.energy);
 }

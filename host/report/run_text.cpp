@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What render and solve print for people.
-#include <cstdio>
-
 #include "host/report/run_report.h"
+#include "host/report/text_line.h"
 
 namespace turbid {
 namespace {
-
-std::string line(const char* format, auto... values) {
-  char text[1024];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 std::string row(const char* name, glm::dvec3 watts) {
   return line("  %-28s %12.6g %12.6g %12.6g\n", name, watts.x, watts.y, watts.z);

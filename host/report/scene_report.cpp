@@ -2,19 +2,13 @@
 // See scene_report.h.
 #include "host/report/scene_report.h"
 
-#include <cstdio>
 #include <sstream>
 
 #include "host/report/json_parts.h"
+#include "host/report/text_line.h"
 
 namespace turbid {
 namespace {
-
-std::string line(const char* format, auto... values) {
-  char text[1024];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 std::string commented(const std::string& text) {
   std::istringstream lines(text);

@@ -121,13 +121,6 @@ std::int64_t TableReader::integer(std::string_view key, const Range& range,
   return value;
 }
 
-bool TableReader::boolean(std::string_view key, bool fallback) const {
-  if (has(key) && !find(key)->is_boolean()) fail(key, "expected true or false");
-  const bool value = has(key) ? find(key)->as_boolean()->get() : fallback;
-  effective_.add(std::string(key), value ? "true" : "false");
-  return value;
-}
-
 std::string TableReader::text(std::string_view key, std::optional<std::string> fallback) const {
   std::string value;
   if (!has(key) && fallback) {

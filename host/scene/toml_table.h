@@ -64,7 +64,6 @@ class TableReader {
   // Each: the value of `key`, or the fallback; without a fallback the key is required.
   float number(std::string_view key, const Range& range, std::optional<float> fallback = {}) const;
   std::int64_t integer(std::string_view key, const Range& range, std::optional<std::int64_t> fallback = {}) const;
-  bool boolean(std::string_view key, bool fallback) const;
   std::string text(std::string_view key, std::optional<std::string> fallback = {}) const;
   /// One number, or three for red, green, blue.
   glm::vec3 colour(std::string_view key, const Range& range, std::optional<glm::vec3> fallback = {}) const;

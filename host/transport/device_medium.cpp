@@ -114,11 +114,6 @@ void copy(const glm::vec3& from, float (&to)[3]) {
 
 }  // namespace
 
-std::size_t DeviceMedium::bytes() const {
-  return regions_buffer.bytes() + tile_map_buffer.bytes() + block_region_buffer.bytes() + distance_tiles.bytes() +
-         index_tiles.bytes() + coefficient_tiles.bytes();
-}
-
 std::vector<cl::Define> DeviceMedium::defines() const {
   return {{"TURBID_CHANNELS", features.channels},
           {"TURBID_BODIES", features.bodies},

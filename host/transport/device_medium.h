@@ -29,7 +29,6 @@ struct DeviceMedium {
   cl::Buffer<float> distance_tiles, index_tiles, coefficient_tiles;
 
   int block_count() const { return frame.blocks().x * frame.blocks().y * frame.blocks().z; }
-  std::size_t bytes() const;
   /// The mandatory -D integers of every program that traces rays.
   std::vector<cl::Define> defines() const;
 };

@@ -26,12 +26,6 @@ constexpr std::array<Row, 3> kSolvers{
 
 }  // namespace
 
-std::vector<std::string> solver_names() {
-  std::vector<std::string> names;
-  for (const Row& row : kSolvers) names.emplace_back(row.name);
-  return names;
-}
-
 std::unique_ptr<TransportSolver> make_solver(const SolverContext& context) {
   std::string known;
   for (const Row& row : kSolvers) {

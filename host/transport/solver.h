@@ -113,6 +113,5 @@ struct SolverContext {
 
 /// The one table of solvers: "steady", "lattice", "photon". Throws InputError for another name.
 std::unique_ptr<TransportSolver> make_solver(const SolverContext&);
-std::vector<std::string> solver_names();
 
 }  // namespace turbid

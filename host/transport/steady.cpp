@@ -56,15 +56,6 @@ SteadySolve::SteadySolve(cl::Session& session, const DiffusionMedium& medium, co
   sums_ = session.zeros<float>(static_cast<std::size_t>(levels_[0].blocks) * channels_);
 }
 
-std::size_t SteadySolve::bytes() const {
-  std::size_t total = q_.bytes() + solution_.bytes() + p_.bytes() + ap_.bytes() + sums_.bytes();
-  for (const Level& level : levels_) {
-    total += level.conductance.bytes() + level.loss.bytes() + level.b.bytes() + level.x.bytes() + level.y.bytes() +
-             level.neighbours.bytes() + level.parent.bytes() + level.octant.bytes();
-  }
-  return total;
-}
-
 void SteadySolve::v_cycle(std::size_t index) {
   cl::Queue& queue = session_.lattice_queue();
   Level& level = levels_[index];

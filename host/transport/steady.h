@@ -23,7 +23,6 @@ class SteadySolve {
   SteadySolve(cl::Session&, const DiffusionMedium&, const SteadySettings&);
   /// q [W]: [channel][block][voxel]. `progress(fraction)` may throw to stop.
   SteadyResult solve(const std::vector<float>& q, const std::function<void(double)>& progress = {});
-  std::size_t bytes() const;
 
  private:
   struct Level {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/support/paths.h"
 #include "tests/support/run.h"
 #include "tests/support/small_scene.h"
 
@@ -72,7 +73,7 @@ TEST_F(Trouble, kernels_that_are_missing_or_do_not_build_are_status_3) {
 }
 
 TEST_F(Trouble, the_installed_program_finds_its_own_kernels) {
-  const Outcome install = place.run({TURBID_CMAKE, "--install", TURBID_BUILD_FOLDER, "--prefix", place.path("usr")});
+  const Outcome install = place.run({cmake_binary(), "--install", build_folder(), "--prefix", place.path("usr")});
   ASSERT_EQ(install.status, 0) << install.err;
   const std::string program = place.path("usr/bin/turbid");
   const Words command{program, "render", "ball.toml", "-q", "-o", "p"};

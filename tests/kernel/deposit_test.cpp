@@ -7,6 +7,7 @@
 #include <numeric>
 #include <random>
 
+#include "tests/support/paths.h"
 #include "tests/support/test_media.h"
 #include "volumes/solid.h"
 
@@ -18,7 +19,7 @@ using L = cl::Buffer<std::int64_t>;
 
 std::vector<std::int64_t> splat(const std::vector<glm::vec4>& points, float fixed_per_watt, std::size_t group) {
   cl::Session& session = test::session();
-  const cl::Program program = session.build(TURBID_TEST_KERNELS "/probe_medium.cl", {{"TURBID_CHANNELS", 1},
+  const cl::Program program = session.build(test::test_kernel("probe_medium.cl"), {{"TURBID_CHANNELS", 1},
                                                                                      {"TURBID_BODIES", 0},
                                                                                      {"TURBID_GRADED", 0},
                                                                                      {"TURBID_HETEROGENEOUS", 0},

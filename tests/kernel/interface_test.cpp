@@ -6,6 +6,7 @@
 #include <random>
 
 #include "host/transport/fresnel_moments.h"
+#include "tests/support/paths.h"
 #include "tests/support/test_media.h"
 
 namespace turbid {
@@ -23,7 +24,7 @@ struct Outcome {
 std::vector<Outcome> meet(const std::vector<Surface>& surfaces) {
   using F = cl::Buffer<float>;
   cl::Session& session = test::session();
-  const cl::Program program = session.build(TURBID_TEST_KERNELS "/probe_medium.cl", {{"TURBID_CHANNELS", 1},
+  const cl::Program program = session.build(test::test_kernel("probe_medium.cl"), {{"TURBID_CHANNELS", 1},
                                                                                      {"TURBID_BODIES", 0},
                                                                                      {"TURBID_GRADED", 0},
                                                                                      {"TURBID_HETEROGENEOUS", 0},

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/paths.h"
 #include "tests/support/test_media.h"
 #include "volumes/solid.h"
 
@@ -24,7 +25,7 @@ struct Sample {
 
 std::vector<Sample> sample(const DeviceMedium& medium, const std::vector<glm::vec3>& points, int body = 0) {
   cl::Session& session = test::session();
-  const cl::Program program = session.build(TURBID_TEST_KERNELS "/probe_medium.cl", medium.defines());
+  const cl::Program program = session.build(test::test_kernel("probe_medium.cl"), medium.defines());
   cl::Kernel<cl::Buffer<RegionParams>, I, I, F, F, F, F, F, int, int> kernel(program, "probe_point");
   std::vector<float> in;
   for (const glm::vec3& p : points) in.insert(in.end(), {p.x, p.y, p.z});
@@ -105,7 +106,7 @@ TEST(MediumSampling, LinearFieldsAreReproduced) {
     points.push_back(glm::round(16.0f * p) / 16.0f);
     for (int axis = 0; axis < 3; ++axis) in.push_back(points.back()[axis]);
   }
-  const cl::Program program = session.build(TURBID_TEST_KERNELS "/probe_medium.cl", medium.defines());
+  const cl::Program program = session.build(test::test_kernel("probe_medium.cl"), medium.defines());
   cl::Kernel<F, F, F, int> kernel(program, "probe_interpolate");
   const F nodes = session.upload(tiles), input = session.upload(in), output = session.zeros<float>(4 * points.size());
   kernel.enqueue(session.march_queue(), {points.size()}, {1}, nodes, input, output, static_cast<int>(points.size()));

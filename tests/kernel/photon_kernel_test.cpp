@@ -18,6 +18,7 @@
 
 #include "host/base/errors.h"
 #include "host/transport/photon_checkpoint.h"
+#include "tests/support/paths.h"
 #include "tests/support/run.h"
 #include "tests/support/test_photons.h"
 #include "volumes/solid.h"
@@ -27,7 +28,7 @@ namespace {
 
 using test::session;
 
-cl::Program probes() { return session().build(TURBID_TEST_KERNELS "/probe_random.cl", {}); }
+cl::Program probes() { return session().build(test::test_kernel("probe_random.cl"), {}); }
 
 TEST(Philox, GivesThePublishedKnownAnswers) {
   // Random123, tests/kat_vectors: philox4x32, 10 rounds; counter, key, answer.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/paths.h"
 #include "tests/support/test_media.h"
 #include "volumes/solid.h"
 
@@ -29,7 +30,7 @@ constexpr int kNone = 0, kSurface = 1, kFace = 2;
 std::vector<StepResult> step_once(const DeviceMedium& medium, const std::vector<test::ProbeRay>& rays, float step,
                                   float grace = 0) {
   cl::Session& session = test::session();
-  const cl::Program program = session.build(TURBID_TEST_KERNELS "/probe_medium.cl", medium.defines());
+  const cl::Program program = session.build(test::test_kernel("probe_medium.cl"), medium.defines());
   cl::Kernel<cl::Buffer<RegionParams>, I, I, F, F, F, F, float, F, int> kernel(program, "probe_step");
   std::vector<float> in;
   for (const auto& r : rays)

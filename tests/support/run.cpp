@@ -16,6 +16,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "tests/support/paths.h"
+
 namespace turbid::test {
 namespace {
 
@@ -120,7 +122,7 @@ Outcome Workplace::run(const std::vector<std::string>& command, const RunSetting
 }
 
 Outcome Workplace::turbid(std::vector<std::string> arguments, const RunSettings& settings) const {
-  arguments.insert(arguments.begin(), TURBID_BINARY);
+  arguments.insert(arguments.begin(), turbid_binary());
   return run(arguments, settings);
 }
 

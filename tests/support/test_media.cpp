@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/support/paths.h"
 #include "volumes/solid.h"
 
 namespace turbid::test {
@@ -180,7 +181,7 @@ Marched march(const MediumDescription& scene, const LightList& lights, const Mar
 std::vector<ProbeRay> trace(const DeviceMedium& medium, const std::vector<ProbeRay>& rays, float step, int steps) {
   using F = cl::Buffer<float>;
   using I = cl::Buffer<int>;
-  const cl::Program program = session().build(TURBID_TEST_KERNELS "/probe_path.cl", medium.defines());
+  const cl::Program program = session().build(test_kernel("probe_path.cl"), medium.defines());
   cl::Kernel<cl::Buffer<RegionParams>, I, I, F, F, F, F, float, int, int> kernel(program, "probe_path");
   std::vector<float> packed;
   for (const ProbeRay& ray : rays) {

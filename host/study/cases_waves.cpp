@@ -153,11 +153,12 @@ Case collisions_case() {
       const char* name;
       double (*ratio)(double s);
     };
-    const Row rows[] = {
-        {CollisionVariant::paper, "paper", [](double s) { return 1 - s / 2; }},
-        {CollisionVariant::exponential, "exponential", [](double s) { return s / 2 / std::tanh(s / 2); }},
-        {CollisionVariant::trapezoid, "trapezoid", [](double) { return 1.0; }},
-        {CollisionVariant::trt, "trt", [](double) { return 1.0; }}};
+    const Row rows[] = {{CollisionVariant::paper, "paper", [](double s) { return 1 - s / 2; }},
+                        {CollisionVariant::exponential, "exponential",
+                         // (s/2) coth(s/2) for the populations, and the fluence is (1 - e^-s) / s of them
+                         [](double s) { return s / 2 / std::tanh(s / 2) * s / (1 - std::exp(-s)); }},
+                        {CollisionVariant::trapezoid, "trapezoid", [](double) { return 1.0; }},
+                        {CollisionVariant::trt, "trt", [](double) { return 1.0; }}};
     for (const Row& row : rows)
       for (const double s : {0.5, 1.0}) {
         const double found = found_coefficient(context, 64, s, with_lattice(row.variant), result);

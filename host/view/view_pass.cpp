@@ -282,6 +282,7 @@ ViewImage render_view(cl::Session& session, const ViewInput& in, Progress& progr
     std::vector<float> values(8 * strip.samples.size());
     session.read(queue, radiance, std::span<float>(values));
     resolve(strip, values, row, end, maker.grid(), &image);
+    for (std::size_t i = 0; i < strip.samples.size(); ++i) image.steps += static_cast<std::int64_t>(values[8 * i + 3]);
     progress.update(static_cast<double>(end) / image.height);
   }
   progress.finish();

@@ -53,8 +53,9 @@ Case forward_case() {
   Case c{.number = 13,
          .name = "forward",
          .title = "Slab of 100 mean free paths that scatters forwards, g = .9, albedo .999, normal beam",
-         .equation = "sigma' = (1 - w g^2) sigma on first flight, g* = g / (1 + g); its first moment Q1 drives "
-                     "J = (Q1 - grad phi / 3) / sigma_tr",
+         .equation =
+             "sigma' = (1 - w g^2) sigma on first flight, g* = g / (1 + g); its first moment Q1 drives "
+             "J = (Q1 - grad phi / 3) / sigma_tr",
          .source = "Monte Carlo R .734, T .0836 (numerics section 8); delta-Eddington, Joseph et al. 1976"};
   c.check = [](CaseContext& context, CaseResult& result) {
     for (const char* solver : {"steady", "lattice"}) {
@@ -69,6 +70,8 @@ Case forward_case() {
 
 }  // namespace
 
-std::vector<Case> beam_cases() { return {half_space_case(), forward_case()}; }
+std::vector<Case> beam_cases() {
+  return {half_space_case(), forward_case()};
+}
 
 }  // namespace turbid::study

@@ -24,7 +24,9 @@ void take_norms(const std::vector<double>& misses, RefinedLevel& level) {
 }
 
 /// A ray that left the domain has no error.
-double or_none(const PathRay& ray, double miss) { return ray.face == -1 ? miss : kNone; }
+double or_none(const PathRay& ray, double miss) {
+  return ray.face == -1 ? miss : kNone;
+}
 
 /// Distance from the focus after a quarter period, relative to the radius R = 24 voxels; step in radii.
 RefinedLevel luneburg(CaseContext& context, double step) {
@@ -40,8 +42,8 @@ RefinedLevel luneburg(CaseContext& context, double step) {
   const int steps = std::max(1, static_cast<int>(std::lround(kPi / 2 * std::sqrt(2.0) / step)));  // arc at largest eta
   const double dtau = kPi / 2 * radius / steps;
   std::vector<double> misses;
-  for (const PathRay& ray : trace(context.session, medium, rays,
-                                  static_cast<float>(dtau / medium.region_params[0].tau_per_arc), steps))
+  for (const PathRay& ray :
+       trace(context.session, medium, rays, static_cast<float>(dtau / medium.region_params[0].tau_per_arc), steps))
     misses.push_back(or_none(ray, glm::length(glm::dvec3(ray.x) - (centre + glm::dvec3(radius, 0, 0))) / radius));
   RefinedLevel level{.h = kPi / 2 * std::sqrt(2.0) / steps};
   take_norms(misses, level);
@@ -105,9 +107,9 @@ RefinedLevel rod(CaseContext& context, double step) {
     return eta0 * eta0 * (1 - a * a * glm::dot(d, d));
   });
   const double beta = eta0 * std::sqrt(1 - a * a * rho0 * rho0), tau = 2.5 * kPi / (eta0 * a);
-  const PathRay out = trace(context.session, medium,
-                            {{glm::vec3(axis) + glm::vec3(rho0, 0, 2), {0, 0, static_cast<float>(beta)}}},
-                            static_cast<float>(tau / steps / medium.region_params[0].tau_per_arc), steps)[0];
+  const PathRay out =
+      trace(context.session, medium, {{glm::vec3(axis) + glm::vec3(rho0, 0, 2), {0, 0, static_cast<float>(beta)}}},
+            static_cast<float>(tau / steps / medium.region_params[0].tau_per_arc), steps)[0];
   RefinedLevel level{.h = 1.25 / steps};
   level.l1 = or_none(out, std::abs(out.x.x - 16) / rho0);
   level.linf = or_none(out, std::abs(out.x.z - 2 - beta * tau));
@@ -115,11 +117,12 @@ RefinedLevel rod(CaseContext& context, double step) {
 }
 
 Case fisheye_case() {
-  Case c{.number = 16,
-         .name = "fisheye",
-         .title = "Maxwell's fish-eye closes its circles; a gradient rod has the known period",
-         .equation = "eta = eta_0 / (1 + (r/a)^2): circles; eta^2 = eta_0^2 (1 - a^2 rho^2): period 2 pi beta / (eta_0 a)",
-         .source = "Maxwell 1854; harmonic oscillation in tau, beta the velocity along the axis"};
+  Case c{
+      .number = 16,
+      .name = "fisheye",
+      .title = "Maxwell's fish-eye closes its circles; a gradient rod has the known period",
+      .equation = "eta = eta_0 / (1 + (r/a)^2): circles; eta^2 = eta_0^2 (1 - a^2 rho^2): period 2 pi beta / (eta_0 a)",
+      .source = "Maxwell 1854; harmonic oscillation in tau, beta the velocity along the axis"};
   Refinement circle;
   circle.parameter = "voxel_size";
   circle.unit = "domain";
@@ -153,6 +156,8 @@ Case fisheye_case() {
 
 }  // namespace
 
-std::vector<Case> path_cases() { return {luneburg_case(), fisheye_case()}; }
+std::vector<Case> path_cases() {
+  return {luneburg_case(), fisheye_case()};
+}
 
 }  // namespace turbid::study

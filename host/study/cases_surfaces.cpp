@@ -97,8 +97,8 @@ Case blurred_case() {
   return c;
 }
 
-/// Root mean square error of the deviation by a glass ball [degrees] for an impact parameter in radii; `voxel` in radii.
-/// The ball's centre is off the grid's symmetry, the rays stand around the axis: no lucky alignment.
+/// Root mean square error of the deviation by a glass ball [degrees] for an impact parameter in radii; `voxel` in
+/// radii. The ball's centre is off the grid's symmetry, the rays stand around the axis: no lucky alignment.
 double ball_error(CaseContext& context, double voxel, double impact) {
   const float radius = static_cast<float>(1 / voxel);
   const int n = 8 * static_cast<int>(std::ceil(3.2 * radius / 8));
@@ -153,6 +153,8 @@ Case ball_case() {
 
 }  // namespace
 
-std::vector<Case> surface_cases() { return {snell_case(), blurred_case(), ball_case()}; }
+std::vector<Case> surface_cases() {
+  return {snell_case(), blurred_case(), ball_case()};
+}
 
 }  // namespace turbid::study

@@ -72,7 +72,7 @@ void run_refinement(const Refinement& refinement, CaseContext& context, CaseResu
   if (context.quick && levels.size() > 2) levels.pop_back();
   const std::string variant = refinement.variant.empty() ? "" : ", " + refinement.variant;
   ErrorSeries series{refinement.parameter + variant, refinement.unit,      refinement.error_name(), {}, {},
-                refinement.order_low,           refinement.order_high};
+                     refinement.order_low,           refinement.order_high};
   for (const double level : levels) {
     const RefinedLevel found = refinement.run(context, level);
     series.levels.push_back({found.h, refinement.error(found)});
@@ -106,8 +106,9 @@ CaseResult Case::run(CaseContext& context) const {
 const std::vector<Case>& cases() {
   static const std::vector<Case> all = [] {
     std::vector<Case> list;
-    for (const auto make : {study::lattice_cases, study::wave_cases, study::boundary_cases, study::beam_cases,
-                            study::path_cases, study::surface_cases, study::stopping_cases})
+    for (const auto make :
+         {study::lattice_cases, study::wave_cases, study::boundary_cases, study::beam_cases, study::path_cases,
+          study::surface_cases, study::transport_cases, study::view_cases, study::stopping_cases})
       for (Case& one : make()) list.push_back(std::move(one));
     const auto rank = [](const Case& c) { return c.number > 0 ? c.number : std::numeric_limits<int>::max(); };
     std::stable_sort(list.begin(), list.end(), [&](const Case& a, const Case& b) { return rank(a) < rank(b); });

@@ -151,7 +151,10 @@ class Kernel {
     recording.touches(argument_name(handle_.get(), index), buffer.bytes(), buffer.get());
   }
   template <class T>
-  void note(Recording&, cl_uint, const T&) {}
+  void note(Recording& recording, cl_uint index, const T& value) {
+    if constexpr (std::is_integral_v<T>)
+      recording.command().integers[argument_name(handle_.get(), index)] = static_cast<long>(value);
+  }
 
   KernelHandle handle_;
   const char* name_ = "";

@@ -2,6 +2,9 @@
 // What a device can do at best, measured by small kernels of ours (kernels/ceilings.cl) in the run that is judged by it:
 // the bandwidth of shared machines drifts by a factor of two, so only ratios from one run count.
 #pragma once
+#include <functional>
+#include <vector>
+
 #include "host/cl/session.h"
 #include "host/profile/spread.h"
 
@@ -19,13 +22,14 @@ struct Ceilings {
 class CeilingMeter {
  public:
   explicit CeilingMeter(cl::Session&);
-  /// One warm round at least is kept by the constructor; every call adds `rounds` samples of each kind.
+  /// Adds `rounds` samples of each kind. Holds three arrays of memory meanwhile.
   void measure(int rounds);
   Ceilings ceilings() const;
 
  private:
   using F = cl::Buffer<float>;
   double time(const std::function<void()>& enqueue);
+  double time_arithmetic(F& out);
 
   cl::Session& session_;
   cl::Program program_;
@@ -35,7 +39,6 @@ class CeilingMeter {
   cl::Kernel<F> nothing_;
   std::size_t items_ = 0;   ///< of the streams, of 16 floats each
   int rounds_ = 64;         ///< of multiply-adds per item
-  F a_, b_, c_;
   std::vector<double> triads_, copies_, multiply_adds_, launches_, waits_;
 };
 

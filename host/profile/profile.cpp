@@ -85,8 +85,15 @@ std::vector<BufferUse> buffers_of(const Frame& frame) {
   std::set<const void*> seen;
   for (const cl::Command& command : frame.commands) {
     if (!command.is_kernel()) continue;
-    for (const cl::TouchedBuffer& buffer : command.buffers)
-      if (seen.insert(buffer.object).second) result.push_back({buffer.argument, command.name, buffer.bytes});
+    for (const cl::TouchedBuffer& buffer : command.buffers) {
+      if (buffer.bytes == 0 || !seen.insert(buffer.object).second) continue;
+      const auto same = std::find_if(result.begin(), result.end(), [&](const BufferUse& use) {
+        return use.argument == buffer.argument && use.kernel == command.name;
+      });
+      BufferUse& use = same != result.end() ? *same : result.emplace_back(BufferUse{buffer.argument, command.name, 0, 0});
+      use.bytes += buffer.bytes;
+      ++use.buffers;
+    }
   }
   std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.bytes > b.bytes; });
   return result;
@@ -118,6 +125,7 @@ Profile profile_scene(cl::Session& session, Scene scene, const ProfileSettings& 
   profile.settings = settings;
   CeilingMeter meter(session);
   meter.measure(3);
+  session.restart_memory_count();
   std::optional<SceneOnGrid> on_grid;
   std::optional<PreparedScene> prepared;
   profile.preparation = record(session, progress, [&] {
@@ -149,6 +157,9 @@ Profile profile_scene(cl::Session& session, Scene scene, const ProfileSettings& 
     if (general) general_seconds.push_back(other);
     frames.push_back(std::move(frame));
   }
+  profile.memory_now = session.memory().now;
+  profile.memory_peak = session.memory().peak;
+  profile.memory_by_stage = session.memory().by_stage;
   meter.measure(3);
   profile.ceilings = meter.ceilings();
   profile.frame = spread_of(seconds);
@@ -171,9 +182,6 @@ Profile profile_scene(cl::Session& session, Scene scene, const ProfileSettings& 
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return seconds[a] < seconds[b]; });
   profile.median_frame = std::move(frames[order[order.size() / 2]]);
-  profile.memory_now = session.memory().now;
-  profile.memory_peak = session.memory().peak;
-  profile.memory_by_stage = session.memory().by_stage;
   return profile;
 }
 

@@ -36,10 +36,11 @@ struct StageProfile {
   int commands = 0;             ///< enqueued in it, per frame
 };
 
-/// A buffer that kernels were given.
+/// Buffers that kernels were given, those of one name together.
 struct BufferUse {
-  std::string argument, kernel; ///< as its first user calls it
-  std::size_t bytes = 0;
+  std::string argument, kernel; ///< as their first user calls them
+  std::size_t bytes = 0;        ///< of all of them
+  int buffers = 0;
 };
 
 struct Profile {

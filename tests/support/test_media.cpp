@@ -96,10 +96,9 @@ ViewImage look_at(const Run& run, const LightList& lights, const Camera& camera,
                       .features = run.features,
                       .solution = run.solution,
                       .lights = lights,
-                      .camera = camera,
                       .surroundings = surroundings,
                       .settings = settings},
-                     progress);
+                     camera, progress);
 }
 
 Light sunlight(glm::vec3 direction, glm::vec3 irradiance) {

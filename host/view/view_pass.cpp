@@ -180,6 +180,7 @@ ViewImage ViewPass::look(const Camera& camera, const std::function<void(double)>
     std::vector<float> values(8 * strip.samples.size());
     p.session.read(queue, radiance, std::span<float>(values));
     resolve(strip, values, row, end, maker.grid(), &image);
+    for (std::size_t i = 0; i < strip.samples.size(); ++i) image.steps += static_cast<std::int64_t>(values[8 * i + 3]);
     if (progress) progress(static_cast<double>(end) / image.height);
   }
   return image;

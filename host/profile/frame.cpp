@@ -58,18 +58,15 @@ LightSolution PreparedScene::light(const LightList& lights) {
 
 std::optional<ViewImage> PreparedScene::look(const LightSolution& solution) {
   if (!scene_.scene.has_camera) return std::nullopt;
-  ViewImage image = render_view(session_,
-                                {.description = scene_.scene.medium,
-                                 .medium = scene_.medium,
-                                 .features = features_,
-                                 .solution = solution,
-                                 .lights = scene_.scene.lights,
-                                 .camera = scene_.scene.camera,
-                                 .surroundings = scene_.scene.surroundings,
-                                 .settings = scene_.scene.view},
-                                progress_);
-  progress_.finish();
-  return image;
+  return render_view(session_,
+                     {.description = scene_.scene.medium,
+                      .medium = scene_.medium,
+                      .features = features_,
+                      .solution = solution,
+                      .lights = scene_.scene.lights,
+                      .surroundings = scene_.scene.surroundings,
+                      .settings = scene_.scene.view},
+                     scene_.scene.camera, progress_);
 }
 
 Frame record(cl::Session& session, Progress& progress, const std::function<void()>& work) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // turbid verify: cases with a known answer, run on this machine's device. Status 1 if one fails.
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "host/app/command.h"
@@ -13,7 +14,7 @@ namespace {
 
 struct VerifyOptions : TalkOptions {
   std::vector<std::string> wanted;
-  std::string device;
+  std::string device, output;
   bool hard = false, quick = false, list = false;
 };
 
@@ -38,9 +39,16 @@ std::vector<const Case*> chosen_cases(const VerifyOptions& options) {
   return chosen;
 }
 
+/// A folder gets files named verify.
+std::string report_prefix(const std::string& wanted) {
+  const bool folder = !wanted.empty() && (wanted.back() == '/' || std::filesystem::is_directory(wanted));
+  return folder ? (std::filesystem::path(wanted) / "verify").string() : wanted;
+}
+
 void verify(const VerifyOptions& options) {
   if (options.list) return print(options.json ? case_list_json(cases()) : case_list_text(cases()));
   const std::vector<const Case*> chosen = chosen_cases(options);
+  const std::string prefix = report_prefix(options.output);
   const cl::DeviceChoice choice = cl::choose_device(options.device);
   cl::Session session(choice);
   Progress progress(options.verbosity());
@@ -53,6 +61,11 @@ void verify(const VerifyOptions& options) {
     if (!options.json) print(verified_case_text(report.cases.back()));
   }
   if (options.json) print(verify_json(report));
+  if (!options.output.empty()) {
+    const NamedTexts files = write_document(verify_document(report, choice.device), prefix);
+    for (const auto& [name, file] : files)
+      if (name == "html" && !options.json) print("report " + file + "\n");
+  }
   if (report.failed() > 0) throw VerificationError(report.verdict());
   if (!options.json) print(report.verdict() + "\n");
 }
@@ -66,6 +79,10 @@ void add_verify(CLI::App& program, Work& work) {
   command.add_flag("--list", options->list, "List the cases and end");
   command.add_flag("--hard", options->hard, "The hard cases instead: extreme media that must stay stable");
   command.add_flag("--quick", options->quick, "Leave out the finest level of each refinement");
+  command
+      .add_option("-o,--output", options->output,
+                  "Also write PREFIX.html, PREFIX.json and a CSV file per table; into a folder: DIR/verify.html, ...")
+      ->type_name("PREFIX");
   add_device_option(command, options->device);
   add_talk_options(command, *options);
   command.footer(

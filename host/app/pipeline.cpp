@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scene file to light solution.
+// See pipeline.h.
 #include "host/app/pipeline.h"
 
 #include <cstdio>
@@ -13,28 +13,13 @@ VoxelisedScene read_and_voxelise(const SceneOptions& options, Progress& progress
   progress.stage("read");
   Scene scene = read_scene(options.scene, options.overrides);
   scene.solver.photon.checkpoint = options.checkpoint;
-  progress.stage("voxelise");
-  MediumVolume medium = voxelise(scene.medium, [&](double fraction) { progress.update(fraction); });
+  SceneOnGrid on_grid = put_on_grid(std::move(scene), progress);
   progress.stage("survey");
-  const SceneFeatures features = scene_features(medium, scene.lights);
-  const MediumSurvey survey = survey_medium(medium);
-  std::vector<std::string> warnings = scene.warnings;
-  for (const std::string& sentence : survey_warnings(scene, medium, survey)) warnings.push_back(sentence);
+  const MediumSurvey survey = survey_medium(on_grid.medium);
+  std::vector<std::string> warnings = on_grid.scene.warnings;
+  for (const std::string& sentence : survey_warnings(on_grid.scene, on_grid.medium, survey)) warnings.push_back(sentence);
   progress.finish();
-  return {std::move(scene), std::move(medium), features, survey, std::move(warnings)};
-}
-
-LightSolution solve_light(cl::Session& session, const VoxelisedScene& in, Progress& progress) {
-  const auto solver = make_solver({.session = session,
-                                   .progress = progress,
-                                   .settings = in.scene.solver,
-                                   .features = in.features,
-                                   .description = in.scene.medium,
-                                   .surroundings = in.scene.surroundings});
-  solver->prepare(in.medium);
-  LightSolution solution = solver->light(in.scene.lights);
-  progress.finish();
-  return solution;
+  return {std::move(on_grid), survey, std::move(warnings)};
 }
 
 RunReport run_report(const VoxelisedScene& in, const cl::DeviceChoice& choice, const LightSolution& solution,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stages that commands share, in order: read, voxelise, survey; then the solver's own.
+// What commands share around a scene's run: reading and looking over its medium before, reporting after.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,28 +8,20 @@
 #include "host/base/progress.h"
 #include "host/report/medium_survey.h"
 #include "host/report/run_report.h"
-#include "host/scene/features.h"
-#include "host/scene/scene.h"
-#include "host/transport/solver.h"
-#include "volumes/medium_volume.h"
+#include "host/study/scene_run.h"
 
 namespace turbid::app {
 
 /// Largest relative energy imbalance that a run may have [-].
 inline constexpr double kAllowedImbalance = 1e-4;
 
-/// A scene on its grid.
-struct VoxelisedScene {
-  Scene scene;
-  MediumVolume medium;
-  SceneFeatures features;
+/// A scene on its grid, looked over.
+struct VoxelisedScene : SceneOnGrid {
   MediumSurvey survey;
   std::vector<std::string> warnings;  ///< of reading and of the survey
 };
 
 VoxelisedScene read_and_voxelise(const SceneOptions&, Progress&);
-
-LightSolution solve_light(cl::Session&, const VoxelisedScene&, Progress&);
 
 /// What every run reports; the command adds its outputs, checksums of its own and the exposure. Refers to its arguments.
 RunReport run_report(const VoxelisedScene&, const cl::DeviceChoice&, const LightSolution&, const Progress&);

@@ -11,7 +11,6 @@
 #include "host/base/errors.h"
 #include "host/report/checksum.h"
 #include "host/report/run_report.h"
-#include "host/view/view_pass.h"
 
 namespace turbid::app {
 namespace {
@@ -54,17 +53,7 @@ void render(const RenderOptions& options) {
   cl::Session session(choice);
   progress.detail("device " + choice.device.label() + ": " + choice.reason);
   const LightSolution solution = solve_light(session, in, progress);
-  const ViewImage image = render_view(session,
-                                      {.description = in.scene.medium,
-                                       .medium = in.medium,
-                                       .features = in.features,
-                                       .solution = solution,
-                                       .lights = in.scene.lights,
-                                       .camera = in.scene.camera,
-                                       .surroundings = in.scene.surroundings,
-                                       .settings = in.scene.view},
-                                      progress);
-  progress.finish();
+  const ViewImage image = look_at(session, in, solution, progress);
 
   progress.stage("write");
   const FolderInUse folder(output.folder);

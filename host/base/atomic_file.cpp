@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// write_file_atomically() by POSIX calls, whose every result is looked at: a full disk may show only in fsync or close.
+// Atomic files by POSIX calls, whose every result is looked at: a full disk may show only in fsync or close.
 #include "host/base/atomic_file.h"
 
 #include <fcntl.h>
@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "host/base/errors.h"
 
@@ -38,28 +39,52 @@ int write_and_close(int file, const char* bytes, std::size_t size) {
   return error;
 }
 
+/// A written file that is not yet where it belongs; destroyed before it is moved there, it is gone.
+class PendingFile {
+ public:
+  PendingFile(const std::string& path, const char* bytes, std::size_t size) : path_(path) {
+    static std::atomic<unsigned> count{0};
+    const std::filesystem::path target(path);
+    const std::filesystem::path folder = target.parent_path();
+    if (!target.has_filename()) fail(path, EISDIR);
+    std::error_code error;
+    if (!folder.empty()) std::filesystem::create_directories(folder, error);
+    if (error) fail(path, error.value());
+    if (std::filesystem::is_directory(target, error)) fail(path, EISDIR);
+
+    temporary_ = (folder / (".turbid-" + std::to_string(::getpid()) + "-" + std::to_string(count++) + ".tmp")).string();
+    const int file = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file < 0) fail(path, errno);
+    if (const int failed = write_and_close(file, bytes, size)) {
+      ::unlink(temporary_.c_str());
+      fail(path, failed);
+    }
+  }
+  PendingFile(PendingFile&& other) noexcept
+      : path_(std::move(other.path_)), temporary_(std::exchange(other.temporary_, {})) {}
+  ~PendingFile() {
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  }
+
+  void move_into_place() {
+    if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_, errno);
+    temporary_.clear();
+  }
+
+ private:
+  std::string path_, temporary_;
+};
+
 }  // namespace
 
 void write_file_atomically(const std::string& path, const void* bytes, std::size_t size) {
-  static std::atomic<unsigned> count{0};
-  const std::filesystem::path target(path);
-  const std::filesystem::path folder = target.parent_path();
-  if (!target.has_filename()) fail(path, EISDIR);
-  std::error_code error;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  if (error) fail(path, error.value());
-  if (std::filesystem::is_directory(target, error)) fail(path, EISDIR);
+  PendingFile(path, static_cast<const char*>(bytes), size).move_into_place();
+}
 
-  const std::string temporary =
-      (folder / (".turbid-" + std::to_string(::getpid()) + "-" + std::to_string(count++) + ".tmp")).string();
-  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (file < 0) fail(path, errno);
-  int failed = write_and_close(file, static_cast<const char*>(bytes), size);
-  if (failed == 0 && std::rename(temporary.c_str(), path.c_str()) != 0) failed = errno;
-  if (failed != 0) {
-    ::unlink(temporary.c_str());
-    fail(path, failed);
-  }
+void write_files_atomically(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::vector<PendingFile> pending;
+  for (const auto& [path, bytes] : files) pending.emplace_back(path, bytes.data(), bytes.size());
+  for (PendingFile& file : pending) file.move_into_place();
 }
 
 }  // namespace turbid

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // report.json.
-#include <sys/resource.h>
-
+#include "host/base/memory.h"
 #include "host/report/json_parts.h"
 #include "host/report/run_report.h"
 
@@ -66,12 +65,6 @@ Json named(const NamedTexts& texts) {
   Json part = Json::object();
   for (const auto& [name, text] : texts) part[name] = text;
   return part;
-}
-
-std::uint64_t peak_memory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 
 }  // namespace

@@ -3,20 +3,17 @@
 #pragma once
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "host/base/progress.h"
 #include "host/cl/device.h"
 #include "host/report/medium_survey.h"
+#include "host/report/named_texts.h"
 #include "host/scene/features.h"
 #include "host/scene/scene.h"
 #include "host/transport/solver.h"
 
 namespace turbid {
-
-/// Name and value, in the order in which they are printed.
-using NamedTexts = std::vector<std::pair<std::string, std::string>>;
 
 struct RunReport {
   const std::string& command_line;

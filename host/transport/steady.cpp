@@ -226,7 +226,7 @@ void SteadySolve::run_round(bool first, PerChannel total, PerChannel& energy, St
     result.error_estimate = at_start;
     return;
   }
-  cl::check(clEnqueueCopyBuffer(queue.get(), fine.y.get(), p_.get(), 0, 0, p_.bytes(), 0, nullptr, nullptr), "copying");
+  session_.copy(queue, fine.y, p_);
   PerChannel last{};
   while (result.iterations < settings_.max_iterations) {
     apply(p_, fine.x);  // fine.x is free between V-cycles

@@ -5,15 +5,14 @@
 #include <OpenImageIO/filesystem.h>
 
 #include <stdexcept>
-#include <vector>
 
 #include "host/base/atomic_file.h"
 #include "host/base/errors.h"
 
 namespace turbid {
 
-void write_image_file(const std::string& path, const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
-                      const void* pixels) {
+std::vector<unsigned char> encode_image(const std::string& path, const char* format, const OIIO::ImageSpec& spec,
+                                        OIIO::TypeDesc type, const void* pixels) {
   const auto refuse = [&](const std::string& reason) {
     throw InputError(path + ": cannot be encoded as " + format + ": " + reason);
   };
@@ -25,6 +24,12 @@ void write_image_file(const std::string& path, const char* format, const OIIO::I
   if (!output->open(path, spec)) refuse(output->geterror());
   if (!output->write_image(type, pixels)) refuse(output->geterror());
   if (!output->close()) refuse(output->geterror());
+  return bytes;
+}
+
+void write_image_file(const std::string& path, const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+                      const void* pixels) {
+  const std::vector<unsigned char> bytes = encode_image(path, format, spec, type, pixels);
   write_file_atomically(path, bytes.data(), bytes.size());
 }
 

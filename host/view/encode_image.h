@@ -4,13 +4,18 @@
 #include <OpenImageIO/imageio.h>
 
 #include <string>
+#include <vector>
 
 #include "host/view/image.h"
 
 namespace turbid {
 
+/// The bytes of an image file. `pixels` has spec.nchannels values of `type` per pixel. `format` is OpenImageIO's name
+/// ("openexr", "png"); `path` names the file in errors.
+std::vector<unsigned char> encode_image(const std::string& path, const char* format, const OIIO::ImageSpec& spec,
+                                        OIIO::TypeDesc type, const void* pixels);
+
 /// Encodes in memory, so that whatever can go wrong on the disk is met (and named) in write_file_atomically.
-/// `pixels` has spec.nchannels values of `type` per pixel. `format` is OpenImageIO's name ("openexr", "png").
 void write_image_file(const std::string& path, const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
                       const void* pixels);
 

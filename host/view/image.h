@@ -2,6 +2,7 @@
 // Pictures on disk: linear EXR with layers and metadata, sRGB PNG previews. The only user of OpenImageIO.
 #pragma once
 #include <glm/glm.hpp>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -17,6 +18,7 @@ struct ViewImage {
   std::vector<glm::vec3> scattered;  ///< light gathered from inside the media
   std::vector<float> depth;          ///< distance from the camera to the first hit [scene units], 1e10 where none
   std::vector<glm::vec3> normal;     ///< unit normal of the first hit, 0 where none
+  std::int64_t steps = 0;            ///< that all camera samples took through the media
 };
 
 /// Metadata of an EXR file: string, float or int attributes with names like "turbid:scene_hash".
@@ -31,6 +33,8 @@ void write_exr(const ViewImage&, const ImageMetadata&, const std::string& path);
 
 /// 2^exposure * radiance, filmic shoulder so that highlights keep their hue, sRGB transfer, 8 bit; alpha is not written.
 void write_png_preview(const ViewImage&, float exposure_stops, const std::string& path);
+/// What write_png_preview() writes.
+std::vector<unsigned char> png_preview_bytes(const ViewImage&, float exposure_stops);
 
 /// Exposure [stops] that maps the picture's bright parts (99th percentile of luminance of covered pixels) near white.
 float automatic_exposure(const ViewImage&);

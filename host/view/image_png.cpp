@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "host/base/atomic_file.h"
 #include "host/view/encode_image.h"
 
 namespace turbid {
@@ -51,7 +52,7 @@ float dither(int x, int y) {
 
 }  // namespace
 
-void write_png_preview(const ViewImage& image, float exposure_stops, const std::string& path) {
+std::vector<unsigned char> png_preview_bytes(const ViewImage& image, float exposure_stops) {
   require_whole(image);
   const float gain = std::exp2(exposure_stops);
   std::vector<unsigned char> bytes(3 * image.colour.size());
@@ -66,7 +67,12 @@ void write_png_preview(const ViewImage& image, float exposure_stops, const std::
   OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
   spec.attribute("Software", "Turbid " TURBID_VERSION);
-  write_image_file(path, "png", spec, OIIO::TypeDesc::UINT8, bytes.data());
+  return encode_image("a picture", "png", spec, OIIO::TypeDesc::UINT8, bytes.data());
+}
+
+void write_png_preview(const ViewImage& image, float exposure_stops, const std::string& path) {
+  const std::vector<unsigned char> bytes = png_preview_bytes(image, exposure_stops);
+  write_file_atomically(path, bytes.data(), bytes.size());
 }
 
 float automatic_exposure(const ViewImage& image) {

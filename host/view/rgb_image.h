@@ -21,6 +21,8 @@ RgbImage read_image(const std::string& path, const std::string& layer = "");
 void write_rgb_exr(const RgbImage&, const std::string& path);
 /// 8 bit, values in [0, 1] as they are, without any transfer curve. Likewise.
 void write_rgb_png(const RgbImage&, const std::string& path);
+/// What write_rgb_png() writes.
+std::vector<unsigned char> png_bytes(const RgbImage&);
 
 /// The perceptually uniform colour map "magma" (van der Walt and Smith, CC0): black, purple, orange, pale yellow;
 /// lightness rises evenly with the value in [0, 1]. sRGB-encoded, within 3/255 of the original's 256 entries. NaN is

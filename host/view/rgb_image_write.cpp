@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "host/base/atomic_file.h"
 #include "host/view/encode_image.h"
 #include "host/view/rgb_image.h"
 
@@ -47,14 +48,19 @@ void write_rgb_exr(const RgbImage& image, const std::string& path) {
   write_image_file(path, "openexr", spec, OIIO::TypeDesc::FLOAT, image.pixels.data());
 }
 
-void write_rgb_png(const RgbImage& image, const std::string& path) {
+std::vector<unsigned char> png_bytes(const RgbImage& image) {
   const OIIO::ImageSpec spec = spec_of(image, OIIO::TypeDesc::UINT8, "sRGB");
   std::vector<unsigned char> bytes;
   bytes.reserve(3 * image.pixels.size());
   for (const glm::vec3& pixel : image.pixels)
     for (int c = 0; c < 3; ++c)
       bytes.push_back(static_cast<unsigned char>(pixel[c] > 0 ? std::lround(255 * std::min(pixel[c], 1.0f)) : 0));
-  write_image_file(path, "png", spec, OIIO::TypeDesc::UINT8, bytes.data());
+  return encode_image("a picture", "png", spec, OIIO::TypeDesc::UINT8, bytes.data());
+}
+
+void write_rgb_png(const RgbImage& image, const std::string& path) {
+  const std::vector<unsigned char> bytes = png_bytes(image);
+  write_file_atomically(path, bytes.data(), bytes.size());
 }
 
 glm::vec3 magma(float value) {

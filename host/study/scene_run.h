@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene computed as a library call: voxelise, solve, look at it. Commands, studies and measurements all go through
+// these.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/base/progress.h"
+#include "host/cl/session.h"
+#include "host/scene/features.h"
+#include "host/scene/scene.h"
+#include "host/transport/solver.h"
+#include "host/view/image.h"
+#include "volumes/medium_volume.h"
+
+namespace turbid {
+
+/// A scene with its medium as voxels.
+struct SceneOnGrid {
+  Scene scene;
+  MediumVolume medium;
+  SceneFeatures features;
+};
+
+/// Stage "voxelise".
+SceneOnGrid put_on_grid(Scene, Progress&);
+/// The stages of the solver that the scene names.
+LightSolution solve_light(cl::Session&, const SceneOnGrid&, Progress&);
+/// Stage "view"; the scene has a camera.
+ViewImage look_at(cl::Session&, const SceneOnGrid&, const LightSolution&, Progress&);
+
+/// One whole run with what it cost.
+struct SceneRun {
+  SceneOnGrid on_grid;
+  LightSolution solution;
+  std::optional<ViewImage> image;  ///< if it was asked for
+  std::vector<StageTime> times;    ///< in order
+  std::uint64_t peak_memory = 0;   ///< largest resident set of the process while it ran [bytes]
+  double seconds() const;          ///< of all stages together
+};
+
+/// Reads nothing: `scene` may have been changed since read_scene. Quiet unless `talk` says otherwise.
+SceneRun run_scene(cl::Session&, Scene scene, bool picture, Verbosity talk = Verbosity::quiet);
+
+/// Seconds of the stage of this name, all its parts together; 0 if there was none.
+double seconds_of(const std::vector<StageTime>&, const std::string& stage);
+
+}  // namespace turbid

@@ -30,7 +30,8 @@ LightSolution solve_light(cl::Session& session, const SceneOnGrid& in, Progress&
   return solution;
 }
 
-ViewImage look_at(cl::Session& session, const SceneOnGrid& in, const LightSolution& solution, Progress& progress) {
+ViewImage look_at(cl::Session& session, const SceneOnGrid& in, const LightSolution& solution, const Camera& camera,
+                  Progress& progress) {
   if (!in.scene.has_camera) throw std::invalid_argument("look_at: the scene has no camera");
   ViewImage image = render_view(session,
                                 {.description = in.scene.medium,
@@ -38,12 +39,16 @@ ViewImage look_at(cl::Session& session, const SceneOnGrid& in, const LightSoluti
                                  .features = in.features,
                                  .solution = solution,
                                  .lights = in.scene.lights,
-                                 .camera = in.scene.camera,
+                                 .camera = camera,
                                  .surroundings = in.scene.surroundings,
                                  .settings = in.scene.view},
                                 progress);
   progress.finish();
   return image;
+}
+
+ViewImage look_at(cl::Session& session, const SceneOnGrid& in, const LightSolution& solution, Progress& progress) {
+  return look_at(session, in, solution, in.scene.camera, progress);
 }
 
 double SceneRun::seconds() const {

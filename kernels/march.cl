@@ -12,6 +12,7 @@
 
 typedef struct {
   Colour absorbed, deposited, reflected, opaque_surface, in_flight;
+  int deposits, interfaces;  // how often
 } Tally;
 
 static Ray ray_from(const global RayState* state) {
@@ -54,6 +55,7 @@ static void lose(const Medium* medium, Tally* tally, global long* deposit, int r
       const Colour scattered = loss * (sigma.sigma_s / fmax(sigma_t, 1e-30f));
       splat(deposit, tile, cell, scattered, fixed_per_watt);
       tally->deposited += scattered;
+      ++tally->deposits;
       loss -= scattered;
     }
   }
@@ -86,7 +88,7 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
   const float floor_power = state->floor_power;
   int bounces = state->bounces, steps = state->steps;
   const Colour none = colour_of(0.0f, 0.0f, 0.0f);
-  Tally tally = {none, none, none, none, none};
+  Tally tally = {none, none, none, none, none, 0, 0};
   bool alive = true;
 
   if (state->entering) {
@@ -177,6 +179,7 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
         alive = false;
         break;
       }
+      ++tally.interfaces;
       const float3 normal = surface_normal(&medium, step.surface, step.beyond);
       const Interface surface = meet_interface(ray.v / eta_from, normal, eta_from, eta_to);
       Ray reflected = ray, refracted = ray;
@@ -202,6 +205,10 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
     }
   }
   if (alive) store_ray(next + atomic_inc(next_count), &ray, power, state, bounces, steps);
+  global long* work = tallies + 3 * TURBID_TALLY_WORK;
+  atom_add((volatile global long*)work, (long)(steps - state->steps));
+  if (tally.deposits) atom_add((volatile global long*)work + 1, (long)tally.deposits);
+  if (tally.interfaces) atom_add((volatile global long*)work + 2, (long)tally.interfaces);
   add_power(tallies + 3 * TURBID_TALLY_ABSORBED, tally.absorbed, p.fixed_per_watt);
   add_power(tallies + 3 * TURBID_TALLY_DEPOSITED, tally.deposited, p.fixed_per_watt);
   add_power(tallies + 3 * TURBID_TALLY_REFLECTED, tally.reflected, p.fixed_per_watt);

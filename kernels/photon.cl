@@ -12,11 +12,9 @@
 //     sigma_s / (M - sigma_a), else nothing happens; the fluence tally is w l. Unbiased for the interpolated coefficients.
 // Steps end at voxel faces, so a segment counts in the one voxel that holds it. One colour at a time: simpler than spectral
 // sampling, and every weight that started is found again exactly.
-#include "lib/ground.h"
 #include "lib/phase.h"
-#include "lib/random.h"
-#include "lib/trace.h"
-#include "shared/photon_params.h"
+#include "lib/photon_source.h"
+#include "lib/photon_state.h"
 
 #if TURBID_CHANNELS != 1
 #error "photon.cl follows one colour at a time: TURBID_CHANNELS must be 1"
@@ -29,127 +27,6 @@
 #define PASSED 0.01f
 // Beside the events of lib/trace.h: the photon has come down to the ground.
 #define EVENT_GROUND 3
-
-typedef struct {
-  Ray ray;
-  float weight;         // of the start weight 1
-  long held;            // the weight in fixed point: what the tallies still have to account for
-  float optical_depth;  // left until the next collision
-  bool unscattered;
-  bool from_lamp;       // else emitted by the medium
-  int steps;
-  Random random;
-} Photon;
-
-// What a work-item has still to add to the global sums.
-typedef struct {
-  long reflected, opaque_surface, in_flight, roulette, absorbed;
-  int absorbing_region;
-  int sum;              // index into the voxel sums; -1: none
-  float track;          // weight times length in that voxel
-} Pending;
-
-static void flush_track(Pending* pending, global long* voxel_sums, float unit) {
-  if (pending->sum >= 0) add_fixed(voxel_sums + pending->sum, pending->track * unit + 0.5f);
-  pending->sum = -1;
-  pending->track = 0.0f;
-}
-
-static void flush_absorbed(Pending* pending, global long* tallies, int region) {
-  if (pending->absorbed != 0)
-    atom_add((volatile global long*)(tallies + TURBID_PHOTON_ABSORBED + pending->absorbing_region), pending->absorbed);
-  pending->absorbed = 0;
-  pending->absorbing_region = region;
-}
-
-static void flush(Pending* pending, global long* tallies, global long* voxel_sums, float unit) {
-  flush_track(pending, voxel_sums, unit);
-  flush_absorbed(pending, tallies, 0);
-  volatile global long* to = (volatile global long*)tallies;
-  if (pending->reflected) atom_add(to + TURBID_PHOTON_REFLECTED, pending->reflected);
-  if (pending->opaque_surface) atom_add(to + TURBID_PHOTON_OPAQUE, pending->opaque_surface);
-  if (pending->in_flight) atom_add(to + TURBID_PHOTON_IN_FLIGHT, pending->in_flight);
-  if (pending->roulette) atom_add(to + TURBID_PHOTON_ROULETTE, pending->roulette);
-}
-
-// Gives the photon another weight; returns what it lost, so that losses telescope exactly.
-static long reweigh(Photon* photon, float weight, float unit) {
-  const long before = photon->held;
-  photon->weight = weight;
-  photon->held = (long)(weight * unit);
-  return before - photon->held;
-}
-
-// The source that holds a point of the cumulative powers.
-static int pick_source(const global ulong* cumulative, int count, ulong u) {
-  int low = 0, high = count - 1;
-  while (low < high) {
-    const int middle = (low + high) >> 1;
-    if (u < cumulative[middle]) {
-      high = middle;
-    } else {
-      low = middle + 1;
-    }
-  }
-  return low;
-}
-
-static float3 any_direction(uint4 bits) { return turned((float3)(0.0f, 0.0f, 1.0f), 1.0f - 2.0f * uniform(bits.x), uniform(bits.y)); }
-
-// Starts photon number `index` of the launch; false if it ends where it enters.
-static bool start(Photon* photon, const Medium* medium, const PhotonParams* p, const global PhotonSource* sources,
-                  const global ulong* cumulative, uint index, Pending* pending) {
-  const ulong number = ((ulong)p->first_photon[1] << 32 | p->first_photon[0]) + index;
-  photon->random.counter = (uint4)((uint)number, (uint)(number >> 32), 0, p->channel);
-  photon->random.key = (uint2)(p->seed[0], p->seed[1]);
-  const uint4 bits = draw(&photon->random);
-  const ulong stratum = (ulong)p->stratum[1] << 32 | p->stratum[0];
-  const ulong u = (p->first_in_batch + index) * stratum + mul_hi((ulong)bits.x << 32 | bits.y, stratum);
-  const global PhotonSource* source = sources + pick_source(cumulative + (size_t)p->channel * p->source_count, p->source_count, u);
-  photon->optical_depth = exponential(bits.z);
-  photon->weight = 1.0f;
-  photon->held = (long)p->unit;
-  photon->unscattered = true;
-  photon->from_lamp = source->kind != TURBID_SOURCE_VOXEL;
-  photon->steps = 0;
-  Ray* ray = &photon->ray;
-  ray->x = vload3(0, source->position);
-  ray->region = source->region;
-  ray->grace = source->grace;
-  float3 direction = vload3(0, source->direction);
-  if (source->kind == TURBID_SOURCE_VOXEL) {
-    const float3 lower = ray->x;
-    ray->x = lower + 0.5f;
-    // A few tries find the voxel's part in its region; its centre lies in there for certain.
-    for (int i = 0; i < 16; ++i) {
-      const uint4 place = draw(&photon->random);
-      const float3 x = lower + (float3)(uniform(place.x), uniform(place.y), uniform(place.z));
-      if (region_at(medium, locate(x)) == ray->region) {
-        ray->x = x;
-        break;
-      }
-    }
-    direction = any_direction(draw(&photon->random));
-  } else if (source->kind == TURBID_SOURCE_CONE) {
-    const uint4 aim = draw(&photon->random);
-    direction = turned(direction, 1.0f - (1.0f - source->cos_half_angle) * uniform(aim.x), uniform(aim.y));
-  } else if (source->kind == TURBID_SOURCE_LAMBERT) {
-    const uint4 aim = draw(&photon->random);
-    direction = turned(direction, sqrt(uniform(aim.x)), uniform(aim.y));
-  }
-  const float eta = eta_at(medium, ray->region, locate(ray->x));
-  if (source->kind == TURBID_SOURCE_ENTERING) {
-    const float eta_from = medium->regions[0].eta;
-    if (!index_matched(medium, 0, ray->region, eta_from, eta)) {
-      const Interface surface = meet_interface(direction, vload3(0, source->normal), eta_from, eta);
-      pending->reflected += reweigh(photon, 1.0f - surface.reflectance, p->unit);
-      if (surface.reflectance >= 1.0f) return false;
-      direction = surface.refracted;
-    }
-  }
-  ray->v = eta * direction;
-  return true;
-}
 
 // Distance along the unit direction to the next voxel face.
 static float distance_to_voxel_face(float3 x, float3 direction) {
@@ -174,21 +51,6 @@ static int voxel_block(float3 x) {
   const int ix = clamp((int)x.x >> 3, 0, BLOCKS_X - 1), iy = clamp((int)x.y >> 3, 0, BLOCKS_Y - 1),
             iz = clamp((int)x.z >> 3, 0, BLOCKS_Z - 1);
   return ix + BLOCKS_X * (iy + BLOCKS_Y * iz);
-}
-
-// Adds weight times length to what is pending for a voxel.
-static void count_track(Pending* pending, global long* voxel_sums, const PhotonParams* p, int sum, bool first_flight, float track) {
-  if (sum >= 0 && first_flight) sum += p->voxel_sums;
-  if (sum != pending->sum) {
-    flush_track(pending, voxel_sums, p->unit);
-    pending->sum = sum;
-  }
-  pending->track += track;
-}
-
-// 1 - exp(-x) for x >= 0: a short series where absorption is weak, which is nearly always.
-static float loss_over(float x) {
-  return x < 0.03f ? x * (1.0f - x * (0.5f - x * (0.16666667f - 0.041666667f * x))) : -expm1(-x);
 }
 
 // Coefficients at a point of a region, per voxel edge.
@@ -223,16 +85,6 @@ static void scatter(Photon* photon, const Medium* medium, float g, uint4 bits) {
   photon->ray.v = eta * turned(photon->ray.v * inverse, sample_henyey_greenstein(g, uniform(bits.x)), uniform(bits.y));
   photon->ray.grace = 0.0f;
   photon->unscattered = false;
-}
-
-// The photon leaves for good through a face of the domain, and may light the ground outside.
-static void escape(Photon* photon, const PhotonParams* p, global long* tallies, global long* ground, global int* ground_rays,
-                   int face, float3 x, float3 direction) {
-  const GroundMap map = {p->ground_size, p->ground_height, (float2)(p->ground_origin[0], p->ground_origin[1]), p->ground_texel};
-  light_ground(ground, ground_rays, map, x, normalize(direction), photon->weight, p->unit);
-  const long weight = reweigh(photon, 0.0f, p->unit);
-  atom_add((volatile global long*)(tallies + TURBID_PHOTON_ESCAPED + face), weight);
-  if (photon->unscattered) atom_add((volatile global long*)(tallies + TURBID_PHOTON_UNSCATTERED + face), weight);
 }
 
 // One step of the photon; false when it has ended.

@@ -169,6 +169,7 @@ kernel void view(MEDIUM_ARGUMENTS, ViewParams p, const global ViewSample* sample
     }
   }
   vstore3(surfaces, 0, radiance + 8 * index);
+  radiance[8 * index + 3] = (float)steps;  // for profiles
   const float3 media = colour_rgb(gathered, &p) * (TURBID_CHANNELS == 3 ? (float3)(1.0f) : vload3(0, p.tint));
   vstore3(media, 0, radiance + 8 * index + 4);
 }

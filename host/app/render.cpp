@@ -20,15 +20,16 @@ struct RenderOptions : SceneOptions {
 };
 
 ImageMetadata metadata_of(const VoxelisedScene& in, const cl::DeviceInfo& device, const SolverReport& solver,
-                          const Progress& progress) {
+                          const std::optional<ErrorEstimate>& error, const Progress& progress) {
   ImageMetadata metadata;
   metadata.text = {{"turbid:version", TURBID_VERSION},   {"turbid:scene", in.scene.name},
                    {"turbid:scene_hash", in.scene.hash}, {"turbid:unit", in.scene.unit},
                    {"turbid:device", device.label()},    {"turbid:driver", device.driver},
                    {"turbid:solver", solver.solver}};
   metadata.numbers = {{"turbid:voxel_size", in.scene.medium.frame.voxel_size},
-                      {"turbid:error_estimate", static_cast<float>(solver.error_estimate)},
+                      {"turbid:solve_error", static_cast<float>(solver.error_estimate)},
                       {"turbid:energy_imbalance", static_cast<float>(solver.energy.imbalance())}};
+  metadata.numbers.merge(error_metadata(error));
   for (const StageTime& stage : progress.times())
     metadata.numbers["turbid:seconds:" + stage.name] += static_cast<float>(stage.seconds);
   return metadata;
@@ -54,14 +55,15 @@ void render(const RenderOptions& options) {
   progress.detail("device " + choice.device.label() + ": " + choice.reason);
   const LightSolution solution = solve_light(session, in, progress);
   const ViewImage image = look_at(session, in, solution, progress);
+  const std::optional<ErrorEstimate> error = estimate_error(session, in, solution, true, progress);
 
   progress.stage("write");
   const FolderInUse folder(output.folder);
   const float exposure = in.scene.film.exposure ? *in.scene.film.exposure : automatic_exposure(image);
-  write_exr(image, metadata_of(in, choice.device, solution.report, progress), output.exr);
+  write_exr(image, metadata_of(in, choice.device, solution.report, error, progress), output.exr);
   write_png_preview(image, exposure, output.png);
   progress.finish();
-  RunReport report = run_report(in, choice, solution, progress);
+  RunReport report = run_report(in, choice, solution, error, progress);
   report.outputs = {{"exr", output.exr}, {"png", output.png}, {"report", output.report}};
   report.checksums.emplace_back("picture", checksum(image.colour, image.direct, image.scattered));
   report.exposure = exposure;

@@ -58,6 +58,7 @@ void Progress::stage(const std::string& name) {
   finish();
   if (interrupt_requested()) throw Interrupted(stop_sentence("before " + name, times_));
   current_ = name;
+  if (watcher_) watcher_(name);
   started_ = last_drawn_ = wall_time();
   draw(0);
 }
@@ -76,6 +77,7 @@ void Progress::update(double fraction) {
 void Progress::finish() {
   if (current_.empty()) return;
   times_.push_back({current_, wall_time() - started_});
+  if (watcher_) watcher_("");
   current_.clear();
   clear_bar();
   if (verbosity_ != Verbosity::quiet)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a run tells its user while it works: stage lines, a progress bar with the time left, warnings; and Ctrl-C.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ class Progress {
   void update(double fraction);
   /// Ends the current stage and remembers its wall time.
   void finish();
+  /// Called with each stage's name as it begins, and with "" when it ends.
+  void watch(std::function<void(const std::string&)> watcher) { watcher_ = std::move(watcher); }
   void warn(const std::string& sentence);
   /// Shown only with -v.
   void detail(const std::string& line);
@@ -42,6 +45,7 @@ class Progress {
   bool terminal_ = false;
   bool bar_shown_ = false;
   std::string current_;
+  std::function<void(const std::string&)> watcher_;
   double started_ = 0;
   double last_drawn_ = 0;
   std::vector<StageTime> times_;

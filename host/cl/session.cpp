@@ -9,13 +9,42 @@
 
 namespace turbid::cl {
 
-Queue::Queue(cl_context context, cl_device_id device) {
+Queue::Queue(cl_context context, cl_device_id device, std::string name, Recorder& recorder)
+    : name_(std::move(name)), recorder_(&recorder) {
   cl_int status = CL_SUCCESS;
   handle_ = QueueHandle(clCreateCommandQueue(context, device, CL_QUEUE_PROFILING_ENABLE, &status));
   check(status, "creating a command queue");
 }
 
 void Queue::finish() { check(clFinish(handle_.get()), "waiting for the device"); }
+
+Recording::Recording(Queue& queue, std::string name, std::string program) : recorder_(queue.recorder()) {
+  if (!recorder_) return;
+  command_.name = std::move(name);
+  command_.program = std::move(program);
+  command_.queue = queue.name();
+  command_.called = wall_time();
+}
+
+EventHandle Recording::finish() {
+  EventHandle result;
+  if (wanted_) {
+    if (recorder_) check(clRetainEvent(event_), "keeping an event");
+    result = EventHandle(event_);
+  }
+  if (recorder_) {
+    command_.returned = wall_time();
+    recorder_->add(std::move(command_), event_);
+  }
+  return result;
+}
+
+std::string argument_name(cl_kernel kernel, cl_uint index) {
+  char name[128] = "";
+  if (clGetKernelArgInfo(kernel, index, CL_KERNEL_ARG_NAME, sizeof name, name, nullptr) != CL_SUCCESS || !name[0])
+    return "argument " + std::to_string(index);
+  return name;
+}
 
 KernelHandle Program::kernel(const char* name) const {
   cl_int status = CL_SUCCESS;
@@ -28,8 +57,13 @@ Session::Session(const DeviceChoice& choice) : device_(choice.device) {
   cl_int status = CL_SUCCESS;
   context_ = ContextHandle(clCreateContext(nullptr, 1, &device_.device, nullptr, nullptr, &status));
   check(status, "creating an OpenCL context");
-  march_ = std::make_unique<Queue>(context(), device_.device);
-  lattice_ = std::make_unique<Queue>(context(), device_.device);
+  march_ = std::make_unique<Queue>(context(), device_.device, "march", *recorder_);
+  lattice_ = std::make_unique<Queue>(context(), device_.device, "lattice", *recorder_);
+}
+
+void Session::stage(const std::string& name) {
+  memory_->stage = name;
+  recorder_->stage(name);
 }
 
 void Session::require_memory(std::size_t bytes) const {
@@ -42,6 +76,7 @@ void Session::require_memory(std::size_t bytes) const {
 
 Program Session::build(const std::string& file, const std::vector<Define>& defines) const {
   const std::string source = kernel_source(file);
+  const double started = wall_time();
   const char* pointer = source.c_str();
   const std::size_t length = source.size();
   cl_int status = CL_SUCCESS;
@@ -49,7 +84,7 @@ Program Session::build(const std::string& file, const std::vector<Define>& defin
   check(status, file.c_str());
 
   std::ostringstream options;
-  options << "-cl-std=CL1.2 -cl-mad-enable -cl-no-signed-zeros";
+  options << "-cl-std=CL1.2 -cl-mad-enable -cl-no-signed-zeros -cl-kernel-arg-info";
   for (const Define& define : defines) options << " -D" << define.name << "=" << define.value;
   status = clBuildProgram(handle.get(), 1, &device_.device, options.str().c_str(), nullptr, nullptr);
   if (status != CL_SUCCESS) {
@@ -59,6 +94,7 @@ Program Session::build(const std::string& file, const std::vector<Define>& defin
     clGetProgramBuildInfo(handle.get(), device_.device, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
     throw DeviceError(file + " does not build (" + options.str() + "): " + status_name(status) + "\n" + log);
   }
+  if (recorder_->on()) recorder_->add(BuiltProgram{file, options.str(), {}, started, wall_time()});
   return Program(std::move(handle), file);
 }
 

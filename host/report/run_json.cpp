@@ -50,6 +50,23 @@ Json photon_part(const PhotonTallies& t) {
           {"roulette", estimate(t.roulette)}};
 }
 
+Json error_parts(const ErrorParts& e) {
+  return {{"total", e.total()}, {"grid", e.grid},   {"steps", e.steps},
+          {"rays", e.rays},     {"solve", e.solve}, {"model", e.model}};
+}
+
+Json error_part(const ErrorEstimate& e) {
+  Json part{{"fluence", error_parts(e.fluence)}};
+  part["fluence"]["measure"] = "relative L2 of the total fluence";
+  if (e.image) {
+    part["picture"] = error_parts(*e.image);
+    part["picture"]["measure"] = "root of relMSE";
+  }
+  part["basis"] = e.basis;
+  part["seconds"] = e.seconds;
+  return part;
+}
+
 Json seconds_part(const std::vector<StageTime>& times) {
   Json part = Json::object();
   double total = 0;
@@ -97,6 +114,7 @@ std::string report_json(const RunReport& r) {
                        {"samples", camera.samples},
                        {"exposure_stops", *r.exposure}};
   }
+  if (r.error) json["error_estimate"] = error_part(*r.error);
   if (s.photon) json["photon"] = photon_part(*s.photon);
   json["seconds"] = seconds_part(r.times);
   json["peak_memory_bytes"] = peak_memory();

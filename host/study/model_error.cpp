@@ -58,13 +58,18 @@ MediumCharacter medium_character(const FluenceVolume& solution, const SampledFlu
   const double surface = std::max(surface_faces(sampled) * 2.0 / 3.0, 1.0);
   character.diffuse_share = std::sqrt(diffuse / weight);
   character.albedo = albedo / weight;
-  character.depth = extinction / weight * 4.0 * static_cast<double>(voxels) / surface * sampled.total.frame.voxel_size;
+  character.chord = 4.0 * static_cast<double>(voxels) / surface * sampled.total.frame.voxel_size;
+  character.depth = extinction / weight * character.chord;
   character.g = g / weight;
   character.eta = eta / weight;
   return character;
 }
 
 double model_error(const MediumCharacter& m) {
+  // Fitted to what steady misses of photon in 31 spheres and slabs: transport depth .2 to 13, albedo .3 to 1, eta 1 and
+  // 1.5, g 0 and .8, lit by spot and parallel light. Of the diffuse part that was .07 to .14 in deep media (most of it
+  // where the light enters), up to .35 in thin ones and with g = .8, .5 to .8 in thin ones of index 1.5, where light
+  // that total reflection keeps inside does not spread evenly.
   const double thin_lens = 0.9 * (m.eta * m.eta - 1) * std::exp(-2 * m.depth);
   return m.diffuse_share *
          (0.12 + 0.15 * std::abs(m.g) + 0.15 * (1 - m.albedo) + 0.2 / (0.5 + m.depth) + thin_lens);

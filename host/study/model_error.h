@@ -11,7 +11,8 @@ namespace turbid {
 struct MediumCharacter {
   double diffuse_share = 0;  ///< ||diffuse fluence|| / ||total fluence|| [-]: only diffuse light can be wrong
   double albedo = 0;         ///< transport albedo (1 - g) sigma_s / ((1 - g) sigma_s + sigma_a) [-]
-  double depth = 0;          ///< transport optical depth: sigma_tr times the mean chord 4 V / S [-]
+  double depth = 0;          ///< transport optical depth: sigma_tr times the mean chord [-]
+  double chord = 0;          ///< 4 V / S [scene units]
   double g = 0;              ///< mean cosine [-]
   double eta = 1;            ///< refractive index [-]
 };

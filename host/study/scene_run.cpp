@@ -34,15 +34,14 @@ ViewImage look_at(cl::Session& session, const SceneOnGrid& in, const LightSoluti
                   Progress& progress) {
   if (!in.scene.has_camera) throw std::invalid_argument("look_at: the scene has no camera");
   ViewImage image = render_view(session,
-                                {.description = in.scene.medium,
-                                 .medium = in.medium,
-                                 .features = in.features,
-                                 .solution = solution,
-                                 .lights = in.scene.lights,
-                                 .camera = camera,
-                                 .surroundings = in.scene.surroundings,
-                                 .settings = in.scene.view},
-                                progress);
+                     {.description = in.scene.medium,
+                      .medium = in.medium,
+                      .features = in.features,
+                      .solution = solution,
+                      .lights = in.scene.lights,
+                      .surroundings = in.scene.surroundings,
+                      .settings = in.scene.view},
+                     camera, progress);
   progress.finish();
   return image;
 }

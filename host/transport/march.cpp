@@ -121,6 +121,8 @@ MarchTallies March::read_tallies() {
   for (int face = 0; face < 6; ++face) {
     result.escaped[face] = colour_at(sums, 3 * (TURBID_TALLY_ESCAPED + face), scale);
   }
+  const std::int64_t* work = sums.data() + 3 * TURBID_TALLY_WORK;
+  result.work = {.steps = work[0], .deposits = work[1], .interfaces = work[2]};
   return result;
 }
 

@@ -14,6 +14,7 @@ namespace turbid {
 struct MarchTallies {
   glm::dvec3 absorbed{0}, deposited{0}, reflected{0}, opaque{0}, in_flight{0};
   std::array<glm::dvec3, 6> escaped{};
+  MarchWork work;
 };
 
 class March {

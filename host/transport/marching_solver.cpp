@@ -105,6 +105,7 @@ LightSolution MarchingSolver::light(const LightList& lights) {
   report.channels = channels;
   report.rays = rays.rays.size();
   report.march_batches = march_->batches();
+  report.march = tallies.work;
   report.iterations = diffuse_light.iterations;
   report.error_estimate = diffuse_light.error_estimate;
   report.active_blocks = diffusion.blocks.count();

@@ -68,11 +68,19 @@ struct PhotonTallies {
   std::array<Estimate, 6> unscattered_faces{}; ///< of it, what never scattered
 };
 
+/// How much the marching pass had to do.
+struct MarchWork {
+  std::int64_t steps = 0;        ///< of all rays
+  std::int64_t deposits = 0;     ///< of them, such as left scattered light in voxels
+  std::int64_t interfaces = 0;   ///< surfaces at which a ray was split
+};
+
 struct SolverReport {
   std::string solver;
   int channels = 3;
   std::size_t rays = 0;
   int march_batches = 0;
+  MarchWork march;
   int iterations = 0;            ///< conjugate-gradient steps, or lattice sweeps
   double error_estimate = 0;     ///< relative error of the fluence that the solver's own stopping test gives
   std::size_t active_blocks = 0, active_voxels = 0;

@@ -126,7 +126,7 @@ SteadyResult SteadySolve::solve(const std::vector<float>& q, const std::function
     if (!first_round && (result.residual_sum <= kResidualGoal || result.iterations >= settings_.max_iterations)) break;
     const int started = result.iterations;
     v_cycle(0);
-    cl::check(clEnqueueCopyBuffer(queue.get(), fine.y.get(), p_.get(), 0, 0, p_.bytes(), 0, nullptr, nullptr), "copying");
+    session_.copy(queue, fine.y, p_);
     std::vector<double> rz = dot(fine.b, fine.y);
     std::vector<std::array<double, 3>> gains;  // alpha_j r_j . z_j
     while (result.iterations < settings_.max_iterations) {

@@ -2,6 +2,7 @@
 // Pictures on disk: linear EXR with layers and metadata, sRGB PNG previews. The only user of OpenImageIO.
 #pragma once
 #include <glm/glm.hpp>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -17,6 +18,7 @@ struct ViewImage {
   std::vector<glm::vec3> scattered;  ///< light gathered from inside the media
   std::vector<float> depth;          ///< distance from the camera to the first hit [scene units], 1e10 where none
   std::vector<glm::vec3> normal;     ///< unit normal of the first hit, 0 where none
+  std::int64_t steps = 0;            ///< that all camera samples took through the media
 };
 
 /// Metadata of an EXR file: string, float or int attributes with names like "turbid:scene_hash".

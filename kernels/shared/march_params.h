@@ -28,7 +28,8 @@ TURBID_ASSERT_SIZE(RayState, 80);
 #define TURBID_TALLY_OPAQUE 3       // absorbed by opaque surfaces
 #define TURBID_TALLY_IN_FLIGHT 4    // branches ended by max_steps, max_bounces or min_power
 #define TURBID_TALLY_ESCAPED 5      // + face: through the domain's faces -x, +x, -y, +y, -z, +z
-#define TURBID_TALLY_COUNT 11
+#define TURBID_TALLY_WORK 11        // no power but counts: steps, deposits, interfaces met
+#define TURBID_TALLY_COUNT 12
 
 typedef struct {
   float step;             // arc length of a step [voxels]

@@ -27,7 +27,9 @@ Json energy_part(const EnergyBalance& e, double allowed) {
           {"balanced", e.imbalance() <= allowed}};
 }
 
-Json estimate(const Estimate& e) { return {{"value", colours(e.value)}, {"standard_error", colours(e.error)}}; }
+Json estimate(const Estimate& e) {
+  return {{"value", colours(e.value)}, {"standard_error", colours(e.error)}};
+}
 
 Json photon_part(const PhotonTallies& t) {
   Json faces, unscattered, regions = Json::array();

@@ -11,7 +11,9 @@ namespace turbid {
 namespace {
 
 /// Nothing fills the domain outside the bodies, so that it may grow.
-bool empty_ambient(const Scene& scene) { return scene.medium.ambient_material < 0; }
+bool empty_ambient(const Scene& scene) {
+  return scene.medium.ambient_material < 0;
+}
 
 /// Fine voxels per edge of a coarse one, and the coarse frame's origin in fine voxels.
 struct Alignment {
@@ -80,11 +82,13 @@ std::vector<std::vector<float>> common_values(const SampledFluence& coarse,
                                               const std::vector<const SampledFluence*>& fine) {
   std::vector<std::vector<float>> values(1 + fine.size());
   if (fine.empty()) return values;
-  const Alignment to_fine = align(coarse.total.frame, fine.front()->total.frame);
-  for (const SampledFluence* each : fine) align(coarse.total.frame, each->total.frame);
-  const int times = to_fine.times, children = times * times * times;
+  std::vector<Alignment> to_fine;
+  std::vector<std::vector<std::size_t>> at(fine.size());  // of the finer voxels of one coarse voxel, per grid
+  for (const SampledFluence* each : fine) {
+    to_fine.push_back(align(coarse.total.frame, each->total.frame));
+    at[to_fine.size() - 1].resize(static_cast<std::size_t>(std::pow(to_fine.back().times, 3) + 0.5));
+  }
   const std::size_t coarse_stride = coarse.total.colour_stride();
-  std::vector<std::size_t> at(static_cast<std::size_t>(children) * fine.size());
   for (int block = 0; block < coarse.total.blocks.count(); ++block)
     for (int v = 0; v < coarse.total.blocks.voxels_per_block(); ++v) {
       const std::size_t i = std::size_t(block) * coarse.total.blocks.voxels_per_block() + v;
@@ -92,22 +96,22 @@ std::vector<std::vector<float>> common_values(const SampledFluence& coarse,
       const glm::ivec3 voxel = coarse.total.blocks.coordinates(block) * kBlockEdge +
                                glm::ivec3(v % kBlockEdge, v / kBlockEdge % kBlockEdge, v / (kBlockEdge * kBlockEdge));
       bool whole = true;
-      for (std::size_t f = 0; f < fine.size() && whole; ++f)
-        for (int child = 0; child < children && whole; ++child) {
+      for (std::size_t f = 0; f < fine.size() && whole; ++f) {
+        const int times = to_fine[f].times;
+        for (int child = 0; child < static_cast<int>(at[f].size()) && whole; ++child) {
           const glm::ivec3 within(child % times, child / times % times, child / (times * times));
-          const std::size_t j = index_of(fine[f]->total, voxel * times + within + to_fine.shift);
+          const std::size_t j = index_of(fine[f]->total, voxel * times + within + to_fine[f].shift);
           whole = j != std::size_t(-1) && fine[f]->media[j].participates;
-          at[f * static_cast<std::size_t>(children) + static_cast<std::size_t>(child)] = j;
+          at[f][static_cast<std::size_t>(child)] = j;
         }
+      }
       if (!whole) continue;
       for (std::size_t c = 0; c < 3; ++c) {
         values[0].push_back(coarse.total.fluence[c * coarse_stride + i]);
         for (std::size_t f = 0; f < fine.size(); ++f) {
           double sum = 0;
-          for (int child = 0; child < children; ++child)
-            sum += fine[f]->total.fluence[c * fine[f]->total.colour_stride() +
-                                          at[f * static_cast<std::size_t>(children) + static_cast<std::size_t>(child)]];
-          values[1 + f].push_back(static_cast<float>(sum / children));
+          for (const std::size_t j : at[f]) sum += fine[f]->total.fluence[c * fine[f]->total.colour_stride() + j];
+          values[1 + f].push_back(static_cast<float>(sum / static_cast<double>(at[f].size())));
         }
       }
     }

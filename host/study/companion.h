@@ -22,11 +22,9 @@ struct SampledFluence {
 };
 SampledFluence sample_fluence(const FluenceVolume&, const MediumVolume&);
 
-/// Values of one colour-by-colour list each, at the voxels of `coarse` whose finer voxels (those of every one of
-/// `fine`) are all active: the fluence of `coarse` first, then the mean of each of `fine`. The grids of all of `fine`
-/// are one, aligned with the coarse one and a whole number of times finer or as fine; a grid may reach further than
-/// another.
-/// Throws std::invalid_argument if they are not aligned.
+/// Values colour by colour at the voxels of `coarse` whose finer voxels (those of every one of `fine`) are all active:
+/// the fluence of `coarse` first, then the mean of each of `fine`. Each grid is a whole number of times finer than the
+/// coarse one, or as fine, and aligned with it; it may reach further. Throws std::invalid_argument if one is not.
 std::vector<std::vector<float>> common_values(const SampledFluence& coarse,
                                               const std::vector<const SampledFluence*>& fine);
 

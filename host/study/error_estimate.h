@@ -2,10 +2,10 @@
 // How wrong a run is, estimated by the run itself, with its parts named.
 //
 // Of the fluence: sqrt(sum (phi - exact)^2 / sum exact^2) over all voxels that scatter or emit and all colours, phi the
-// total fluence as in `turbid solve`'s file: what `turbid compare A.vdb EXACT.vdb --grid fluence --measure rel-l2` says.
-// Voxels that scatter less than 1 % of the strongest are left out, see local_media.
-// Of the picture: the root of its relMSE, what `turbid compare A.exr EXACT.exr` prints, squared: how far off a pixel is.
-// Exact is radiative transfer in the scene's medium. The parts add up: they are bounds that may pull the same way.
+// total fluence as in `turbid solve`'s file: what `turbid compare A.vdb EXACT.vdb --grid fluence --measure rel-l2`
+// says. Voxels that scatter less than 1 % of the strongest are left out, see local_media. Of the picture: the root of
+// its relMSE, what `turbid compare A.exr EXACT.exr` prints, squared: how far off a pixel is. Exact is radiative
+// transfer in the scene's medium. The parts add up: they are bounds that may pull the same way.
 #pragma once
 #include <optional>
 #include <string>

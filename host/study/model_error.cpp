@@ -71,8 +71,7 @@ double model_error(const MediumCharacter& m) {
   // where the light enters), up to .35 in thin ones and with g = .8, .5 to .8 in thin ones of index 1.5, where light
   // that total reflection keeps inside does not spread evenly.
   const double thin_lens = 0.9 * (m.eta * m.eta - 1) * std::exp(-2 * m.depth);
-  return m.diffuse_share *
-         (0.12 + 0.15 * std::abs(m.g) + 0.15 * (1 - m.albedo) + 0.2 / (0.5 + m.depth) + thin_lens);
+  return m.diffuse_share * (0.12 + 0.15 * std::abs(m.g) + 0.15 * (1 - m.albedo) + 0.2 / (0.5 + m.depth) + thin_lens);
 }
 
 }  // namespace turbid

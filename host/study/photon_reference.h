@@ -13,10 +13,10 @@
 namespace turbid {
 
 struct ReferenceSettings {
-  double photons = 4e6;      ///< of both runs together
-  std::uint64_t seed = 1;    ///< of A; B has the next one
+  double photons = 4e6;    ///< of both runs together
+  std::uint64_t seed = 1;  ///< of A; B has the next one
   bool picture = false;
-  std::string cache;         ///< folder that keeps the photons between calls, so that a second one is quick; empty: none
+  std::string cache;  ///< folder that keeps the photons between calls, so that a second one is quick; empty: none
 };
 
 struct PhotonReference {

@@ -16,7 +16,7 @@ struct ReferenceSettings {
   double photons = 4e6;    ///< of both runs together
   std::uint64_t seed = 1;  ///< of A; B has the next one
   bool picture = false;
-  std::string cache;  ///< folder that keeps the photons between calls, so that a second one is quick; empty: none
+  std::string cache = {};  ///< folder that keeps the photons between calls, so that a second one is quick; empty: none
 };
 
 struct PhotonReference {

@@ -10,7 +10,7 @@
 namespace turbid {
 
 void write_fluence_vdb(const FluenceVolume& result, const MediumVolume& medium, const std::string& path,
-                       const std::string& unit) {
+                       const std::string& unit, const std::map<std::string, float>& numbers) {
   const std::size_t expected = 3 * result.colour_stride();
   if (result.blocks.edge() != kBlockEdge || result.fluence.size() != expected ||
       (!result.deposit.empty() && result.deposit.size() != expected))
@@ -52,6 +52,8 @@ void write_fluence_vdb(const FluenceVolume& result, const MediumVolume& medium, 
   const auto deposit_grid = compose([&](std::size_t i, float) { return deposit(i); });
   label_grid(*fluence_grid, "fluence", openvdb::GRID_FOG_VOLUME, unit, "W/" + unit + "^2");
   label_grid(*deposit_grid, "deposit", openvdb::GRID_FOG_VOLUME, unit, "W/" + unit + "^3");
+
+  for (const auto& [name, number] : numbers) fluence_grid->insertMeta(name, openvdb::FloatMetadata(number));
 
   openvdb::GridCPtrVec grids{fluence_grid, deposit_grid};
   for (const auto& grid : export_grids(medium.grids(), unit)) grids.push_back(grid);

@@ -2,6 +2,7 @@
 // The result of a solver: fluence per voxel and colour, on active blocks, with the light that scattered there first.
 #pragma once
 #include <glm/glm.hpp>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,8 @@ struct FluenceVolume {
 
 /// Writes `fluence` (RGB: diffuse plus first-flight deposit / sigma_s), `deposit` (RGB) and the medium's grids as one
 /// OpenVDB file with transform and unit metadata. Throws InputError if the file can't be written.
-void write_fluence_vdb(const FluenceVolume&, const MediumVolume&, const std::string& path, const std::string& unit);
+void write_fluence_vdb(const FluenceVolume&, const MediumVolume&, const std::string& path, const std::string& unit,
+                       const std::map<std::string, float>& numbers = {});
 
 /// One line per grid of a .vdb file: name, type, class, active voxels, bounding box, transform, value range, metadata.
 /// Throws InputError if the file is not a readable VDB.

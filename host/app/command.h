@@ -19,5 +19,6 @@ void add_info(CLI::App& program, Work& work);
 void add_compare(CLI::App& program, Work& work);
 void add_profile(CLI::App& program, Work& work);
 void add_verify(CLI::App& program, Work& work);
+void add_converge(CLI::App& program, Work& work);
 
 }  // namespace turbid::app

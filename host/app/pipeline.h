@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What commands share around a scene's run: reading and looking over its medium before, reporting after.
 #pragma once
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +23,11 @@ struct VoxelisedScene : SceneOnGrid {
 VoxelisedScene read_and_voxelise(const SceneOptions&, Progress&);
 
 /// What every run reports; the command adds its outputs, checksums of its own and the exposure. Refers to its arguments.
-RunReport run_report(const VoxelisedScene&, const cl::DeviceChoice&, const LightSolution&, const Progress&);
+RunReport run_report(const VoxelisedScene&, const cl::DeviceChoice&, const LightSolution&,
+                     std::optional<ErrorEstimate>, const Progress&);
+
+/// The estimate as numbers of a file's metadata: "turbid:error:fluence", "turbid:error:fluence:grid", ...
+std::map<std::string, float> error_metadata(const std::optional<ErrorEstimate>&);
 
 /// Throws VerificationError if the run lost or made energy.
 void require_balance(const EnergyBalance&);

@@ -40,14 +40,17 @@ void render(const RenderOptions& options) {
   progress.detail("device " + choice.device.label() + ": " + choice.reason);
   const LightSolution solution = solve_light(session, in, progress);
   const ViewImage image = look_at(session, in, solution, progress);
+  const std::optional<ErrorEstimate> error = estimate_error(session, in, solution, true, progress);
 
   progress.stage("write");
   const FolderInUse folder(output.folder);
   const float exposure = in.scene.film.exposure ? *in.scene.film.exposure : automatic_exposure(image);
-  write_exr(image, picture_metadata(in, choice.device, solution.report, progress.times()), output.exr);
+  ImageMetadata metadata = picture_metadata(in, choice.device, solution.report, progress.times());
+  metadata.numbers.merge(error_metadata(error));
+  write_exr(image, metadata, output.exr);
   write_png_preview(image, exposure, output.png);
   progress.finish();
-  RunReport report = run_report(in, choice, solution, progress);
+  RunReport report = run_report(in, choice, solution, error, progress);
   report.outputs = {{"exr", output.exr}, {"png", output.png}, {"report", output.report}};
   report.checksums.emplace_back("picture", checksum(image.colour, image.direct, image.scattered));
   report.exposure = exposure;

@@ -25,12 +25,13 @@ void solve(const SolveOptions& options) {
   cl::Session session(choice);
   progress.detail("device " + choice.device.label() + ": " + choice.reason);
   const LightSolution solution = solve_light(session, in, progress);
+  const std::optional<ErrorEstimate> error = estimate_error(session, in, solution, false, progress);
   progress.stage("write");
   const FolderInUse folder(output.parent_path());
-  write_fluence_vdb(solution.volume, in.medium, output.string(), in.scene.unit);
+  write_fluence_vdb(solution.volume, in.medium, output.string(), in.scene.unit, error_metadata(error));
   progress.finish();
 
-  RunReport report = run_report(in, choice, solution, progress);
+  RunReport report = run_report(in, choice, solution, error, progress);
   report.outputs = {{"vdb", output.string()}};
   print(options.json ? report_json(report) : report_text(report, options.quiet));
   require_balance(solution.report.energy);

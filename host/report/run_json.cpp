@@ -27,7 +27,9 @@ Json energy_part(const EnergyBalance& e, double allowed) {
           {"balanced", e.imbalance() <= allowed}};
 }
 
-Json estimate(const Estimate& e) { return {{"value", colours(e.value)}, {"standard_error", colours(e.error)}}; }
+Json estimate(const Estimate& e) {
+  return {{"value", colours(e.value)}, {"standard_error", colours(e.error)}};
+}
 
 Json photon_part(const PhotonTallies& t) {
   Json faces, unscattered, regions = Json::array();
@@ -48,6 +50,23 @@ Json photon_part(const PhotonTallies& t) {
           {"unscattered_faces", unscattered},
           {"in_flight", estimate(t.in_flight)},
           {"roulette", estimate(t.roulette)}};
+}
+
+Json error_parts(const ErrorParts& e) {
+  return {{"total", e.total()}, {"grid", e.grid},   {"steps", e.steps},
+          {"rays", e.rays},     {"solve", e.solve}, {"model", e.model}};
+}
+
+Json error_part(const ErrorEstimate& e) {
+  Json part{{"fluence", error_parts(e.fluence)}};
+  part["fluence"]["measure"] = "relative L2 of the total fluence";
+  if (e.image) {
+    part["picture"] = error_parts(*e.image);
+    part["picture"]["measure"] = "root of relMSE";
+  }
+  part["basis"] = e.basis;
+  part["seconds"] = e.seconds;
+  return part;
 }
 
 Json seconds_part(const std::vector<StageTime>& times) {
@@ -98,6 +117,7 @@ std::string report_json(const RunReport& r) {
                        {"samples", camera.samples},
                        {"exposure_stops", *r.exposure}};
   }
+  if (r.error) json["error_estimate"] = error_part(*r.error);
   if (s.photon) json["photon"] = photon_part(*s.photon);
   json["seconds"] = seconds_part(r.times);
   json["peak_memory_bytes"] = peak_memory();

@@ -11,6 +11,7 @@
 #include "host/report/named_texts.h"
 #include "host/scene/features.h"
 #include "host/scene/scene.h"
+#include "host/study/error_estimate.h"
 #include "host/transport/solver.h"
 
 namespace turbid {
@@ -22,6 +23,7 @@ struct RunReport {
   const MediumSurvey& survey;
   const cl::DeviceChoice& device;
   const SolverReport& solver;
+  std::optional<ErrorEstimate> error;  ///< how wrong it is, by its own estimate
   double allowed_imbalance = 0;  ///< above it the run counts as failed [-]
   const std::vector<StageTime>& times;
   const std::vector<std::string>& warnings;

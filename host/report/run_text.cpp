@@ -36,6 +36,18 @@ std::string photon_table(const PhotonTallies& t) {
   return text + row("(its power)", t.unscattered.value);
 }
 
+std::string error_row(const char* of, const ErrorParts& e) {
+  return line("  %-8s %9.2g %9.2g %9.2g %9.2g %9.2g %9.2g\n", of, e.total(), e.grid, e.steps, e.rays, e.solve, e.model);
+}
+
+std::string error_table(const ErrorEstimate& e) {
+  std::string text = line("error      estimate %9s %9s %9s %9s %9s   (grid: by %s)\n", "grid", "steps", "rays", "solve",
+                          "model", e.basis.c_str());
+  text += error_row("fluence", e.fluence);
+  if (e.image) text += error_row("picture", *e.image);
+  return text;
+}
+
 std::string with_commas(std::size_t number) {
   std::string digits = std::to_string(number);
   for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) digits.insert(static_cast<std::size_t>(at), ",");
@@ -57,9 +69,10 @@ std::string report_text(const RunReport& r, bool brief) {
     text += line("solver     photon: %s photons in %d batches, mean relative standard error of the fluence %.2g\n",
                  with_commas(s.photon->photons).c_str(), s.photon->batches, s.error_estimate);
   } else {
-    text += line("solver     %s: %s rays in %d batches, %d iterations, estimated error %.2g\n", s.solver.c_str(),
+    text += line("solver     %s: %s rays in %d batches, %d iterations, solved to %.2g\n", s.solver.c_str(),
                  with_commas(s.rays).c_str(), s.march_batches, s.iterations, s.error_estimate);
   }
+  if (r.error) text += error_table(*r.error);
   text += "times     ";
   double total = 0;
   for (const StageTime& stage : r.times) {

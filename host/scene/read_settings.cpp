@@ -83,10 +83,13 @@ void read_settings(Reading& reading, const toml::table& root) {
   SolverSettings& s = reading.scene.solver;
   const toml::table* node = table_at(root, "solver");
   const TableReader solver(node ? *node : kNone, "[solver]", effective.section("[solver]"));
-  solver.allow({"name", "tolerance", "seed", "march", "lattice", "steady", "photon"});
+  solver.allow({"name", "tolerance", "seed", "error_estimate", "march", "lattice", "steady", "photon"});
   s.solver = solver.word("name", {"steady", "lattice", "photon"}, s.solver);
   const float tolerance = solver.number("tolerance", Range::closed(1e-6, 0.1), s.steady.tolerance);
   s.seed = static_cast<std::uint64_t>(solver.integer("seed", Range::at_least(0), static_cast<std::int64_t>(s.seed)));
+  s.error_estimate = solver.choice<EstimateEffort>(
+      "error_estimate",
+      {{"off", EstimateEffort::off}, {"quick", EstimateEffort::quick}, {"full", EstimateEffort::full}}, "quick");
   s.march = read_march({sub_table(solver, "march"), "[solver.march]", effective.section("[solver.march]")});
   s.lattice = read_lattice({sub_table(solver, "lattice"), "[solver.lattice]", effective.section("[solver.lattice]")},
                            tolerance);

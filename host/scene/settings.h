@@ -49,12 +49,20 @@ struct ViewSettings {
   float min_weight = 0.003f;        ///< a branch that carries less than this fraction of the pixel ends [-], in [0, 0.1]
 };
 
+/// How a run estimates its own error.
+enum class EstimateEffort {
+  off,    ///< not at all
+  quick,  ///< by a companion run on voxels twice as large, and formulas for light rays and steps; costs about a tenth
+  full,   ///< companion runs for those as well; costs about a third
+};
+
 struct SolverSettings {
   std::string solver = "steady";    ///< "steady", "lattice" or "photon"
   MarchSettings march;
   LatticeSettings lattice;
   SteadySettings steady;
   PhotonSettings photon;
+  EstimateEffort error_estimate = EstimateEffort::quick;
   std::uint64_t seed = 0;           ///< of the photons, and offset of the regular ray grid; the same seed gives the same bits
 };
 

@@ -12,7 +12,7 @@ ImageMetadata picture_metadata(const SceneOnGrid& in, const cl::DeviceInfo& devi
                    {"turbid:device", device.label()},    {"turbid:driver", device.driver},
                    {"turbid:solver", solver.solver}};
   metadata.numbers = {{"turbid:voxel_size", in.scene.medium.frame.voxel_size},
-                      {"turbid:error_estimate", static_cast<float>(solver.error_estimate)},
+                      {"turbid:solve_error", static_cast<float>(solver.error_estimate)},
                       {"turbid:energy_imbalance", static_cast<float>(solver.energy.imbalance())}};
   for (const StageTime& stage : times)
     metadata.numbers["turbid:seconds:" + stage.name] += static_cast<float>(stage.seconds);

@@ -30,9 +30,10 @@ LightSolution solve_light(cl::Session& session, const SceneOnGrid& in, Progress&
   return solution;
 }
 
-ViewImage look_at(cl::Session& session, const SceneOnGrid& in, const LightSolution& solution, Progress& progress) {
+ViewImage look_at(cl::Session& session, const SceneOnGrid& in, const LightSolution& solution, const Camera& camera,
+                  Progress& progress) {
   if (!in.scene.has_camera) throw std::invalid_argument("look_at: the scene has no camera");
-  return render_view(session,
+  ViewImage image = render_view(session,
                      {.description = in.scene.medium,
                       .medium = in.medium,
                       .features = in.features,
@@ -40,7 +41,13 @@ ViewImage look_at(cl::Session& session, const SceneOnGrid& in, const LightSoluti
                       .lights = in.scene.lights,
                       .surroundings = in.scene.surroundings,
                       .settings = in.scene.view},
-                     in.scene.camera, progress);
+                     camera, progress);
+  progress.finish();
+  return image;
+}
+
+ViewImage look_at(cl::Session& session, const SceneOnGrid& in, const LightSolution& solution, Progress& progress) {
+  return look_at(session, in, solution, in.scene.camera, progress);
 }
 
 double SceneRun::seconds() const {

@@ -31,8 +31,10 @@ struct SceneOnGrid {
 SceneOnGrid put_on_grid(Scene, Progress&);
 /// The stages of the solver that the scene names.
 LightSolution solve_light(cl::Session&, const SceneOnGrid&, Progress&);
-/// Stage "view"; the scene has a camera.
+/// Stage "view"; the scene has a camera, or throws std::invalid_argument.
 ViewImage look_at(cl::Session&, const SceneOnGrid&, const LightSolution&, Progress&);
+/// Through another camera than the scene's.
+ViewImage look_at(cl::Session&, const SceneOnGrid&, const LightSolution&, const Camera&, Progress&);
 
 /// One whole run with what it cost.
 struct SceneRun {

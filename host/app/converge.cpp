@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// turbid converge: how fast the error of a case or scene falls when a parameter is refined, and what that costs.
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "host/app/command.h"
+#include "host/app/options.h"
+#include "host/app/output.h"
+#include "host/base/errors.h"
+#include "host/report/converge_report.h"
+#include "host/report/report_context.h"
+#include "host/study/case.h"
+#include "host/study/refine_case.h"
+
+namespace turbid::app {
+namespace {
+
+struct ConvergeOptions : SceneOptions {
+  std::string over, reference = "auto", output, cache;
+  std::vector<double> levels;
+  int repeat = 1;
+  double photons = 4e6;
+  bool picture = false;
+};
+
+bool is_scene(const std::string& subject) {
+  return std::filesystem::path(subject).extension() == ".toml";
+}
+
+std::vector<SceneRefinement> refine(cl::Session& session, Progress& progress, const ConvergeOptions& options) {
+  const auto tell = [&](const std::string& level) { progress.stage(level); };
+  if (!is_scene(options.scene)) {
+    const Case* found = find_case(options.scene);
+    std::string names;
+    for (const Case& one : cases()) names += one.refinements.empty() ? "" : (names.empty() ? "" : ", ") + one.name;
+    if (!found) throw InputError(options.scene + ": no scene (.toml) and no such case; cases that refine: " + names);
+    return refine_case(session, progress, *found, options.over, options.levels, tell);
+  }
+  const SceneParameter& parameter = find_scene_parameter(options.over);
+  const auto read = [&](std::optional<int> resolution) {
+    SceneOverrides overrides = options.overrides;
+    if (resolution) overrides.resolution = resolution;
+    return read_scene(options.scene, overrides);
+  };
+  RefineSettings settings{.levels = options.levels.empty() ? parameter.levels : options.levels,
+                          .repeat = options.repeat,
+                          .picture = options.picture,
+                          .against_photon = options.reference == "photon",
+                          .reference = {.photons = options.photons, .cache = options.cache}};
+  if (settings.levels.empty()) {
+    const glm::ivec3 voxels = read({}).medium.frame.voxels;
+    const int longest = std::max({voxels.x, voxels.y, voxels.z}), first = std::max(8, longest / 32 * 8);
+    settings.levels = {double(first), 2.0 * first, 4.0 * first};
+  }
+  check_levels(parameter, settings.levels);
+  return {refine_scene(session, read, parameter, settings, tell)};
+}
+
+void converge(const ConvergeOptions& options) {
+  if (options.over.empty()) throw InputError("--over is missing: which parameter shall be refined?");
+  if (options.reference != "auto" && options.reference != "photon")
+    throw InputError("--reference " + options.reference + ": expected auto or photon");
+  if (options.repeat < 1) throw InputError("--repeat: expected 1 or more");
+  const cl::DeviceChoice choice = cl::choose_device(options.device);
+  const std::string name = std::filesystem::path(options.scene).stem().string();
+  const std::filesystem::path prefix = options.output.empty()
+                                           ? std::filesystem::path("out") / name / ("converge_" + options.over)
+                                           : std::filesystem::path(options.output);
+  Progress progress(options.verbosity());
+  cl::Session session(choice);
+  const std::vector<SceneRefinement> refinements = refine(session, progress, options);
+  progress.finish();
+  const Document document = converge_document(name, refinements, report_context(command_line(), &choice.device));
+  const FolderInUse folder(prefix.has_parent_path() ? prefix.parent_path() : ".");
+  const NamedTexts files = write_document(document, prefix.string());
+  if (options.json) {
+    print(document_json(document));
+  } else {
+    if (!options.quiet) print(document_text(document));
+    for (const auto& [kind, file] : files) print(kind + "  " + file + "\n");
+  }
+  for (const SceneRefinement& refinement : refinements)
+    if (!refinement.passed())
+      throw VerificationError(name + ": the order in " + refinement.parameter.name + " is less than expected");
+}
+
+}  // namespace
+
+void add_converge(CLI::App& program, Work& work) {
+  const auto options = std::make_shared<ConvergeOptions>();
+  CLI::App& command = *program.add_subcommand("converge", "Measure how the error of a case or scene falls by refining");
+  command.add_option("SUBJECT", options->scene, "A scene (.toml), or a case of `turbid verify --list`")->required();
+  command
+      .add_option("--over", options->over,
+                  "voxel_size, step, rays, tolerance, photons, block, inner or solver; of a case what it offers")
+      ->type_name("PARAMETER");
+  command
+      .add_option(
+          "--levels", options->levels,
+          "Its values from coarse to fine, with commas between; voxel_size: voxels along the longest side, each a "
+          "multiple of the first")
+      ->delimiter(',')
+      ->type_name("L,L,...");
+  command
+      .add_option("--reference", options->reference,
+                  "auto: the exact answer of a case, finer levels of a scene; photon: Monte Carlo, where the error of "
+                  "diffusion itself shows as well")
+      ->type_name("auto|photon");
+  command.add_option("--photons", options->photons, "Photons of that reference (default: 4e6)")->type_name("N");
+  command.add_option("--cache", options->cache, "Folder that keeps the reference's photons for another time")
+      ->type_name("DIR");
+  command.add_option("--repeat", options->repeat, "Runs of each level; times are medians (default: 1)")->type_name("N");
+  command.add_flag("--picture", options->picture, "Compare pictures too, and put them into the report");
+  command.add_option("-D", options->overrides.settings, "Override a key of the scene; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command
+      .add_option("-o,--output", options->output,
+                  "PREFIX of the report's .html, .json and .csv files (default: out/NAME/converge_PARAMETER)")
+      ->type_name("PREFIX");
+  add_talk_options(command, *options);
+  add_device_option(command, options->device);
+  command.footer(
+      "Examples:\n"
+      "  turbid converge sphere_matched --over voxel_size\n"
+      "  turbid converge scenes/sphere.toml --over voxel_size --levels 24,48,96 --picture\n"
+      "Status 1 if the observed order is less than expected.");
+  command.callback([options, &work] { work = [options] { converge(*options); }; });
+}
+
+}  // namespace turbid::app

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// See companion.h.
+#include "host/study/companion.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "host/study/error_measures.h"
+
+namespace turbid {
+namespace {
+
+/// Nothing fills the domain outside the bodies, so that it may grow.
+bool empty_ambient(const Scene& scene) {
+  return scene.medium.ambient_material < 0;
+}
+
+/// Fine voxels per edge of a coarse one, and the coarse frame's origin in fine voxels.
+struct Alignment {
+  int times = 1;
+  glm::ivec3 shift{0};
+};
+
+Alignment align(const GridFrame& coarse, const GridFrame& fine) {
+  Alignment a;
+  a.times = static_cast<int>(std::lround(coarse.voxel_size / fine.voxel_size));
+  const glm::vec3 shift = (coarse.origin - fine.origin) / fine.voxel_size;
+  a.shift = glm::ivec3(glm::round(shift));
+  // 0.01 voxels: more than the rounding of float sizes over a domain, less than any intended shift.
+  if (a.times < 1 || std::abs(coarse.voxel_size / fine.voxel_size - float(a.times)) > 1e-4f * float(a.times) ||
+      glm::length(shift - glm::vec3(a.shift)) > 0.01f)
+    throw std::invalid_argument("common_values: the voxels of the two grids do not coincide");
+  return a;
+}
+
+std::size_t index_of(const FluenceVolume& volume, glm::ivec3 voxel) {
+  if (glm::any(glm::lessThan(voxel, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(voxel, volume.frame.voxels)))
+    return std::size_t(-1);
+  const int block = volume.blocks.find(voxel / kBlockEdge);
+  if (block < 0) return std::size_t(-1);
+  const glm::ivec3 v = voxel % kBlockEdge;
+  return std::size_t(block) * volume.blocks.voxels_per_block() + (v.z * kBlockEdge + v.y) * kBlockEdge + v.x;
+}
+
+}  // namespace
+
+std::optional<Scene> coarser_scene(const Scene& scene, int times) {
+  const GridFrame& fine = scene.medium.frame;
+  GridFrame coarse = fine;
+  coarse.voxel_size = fine.voxel_size * float(times);
+  for (int axis = 0; axis < 3; ++axis) {
+    const int unit = kBlockEdge * times, n = fine.voxels[axis];
+    coarse.voxels[axis] = (n + unit - 1) / unit * kBlockEdge;
+    const int growth = coarse.voxels[axis] * times - n;
+    if (growth == 0) continue;
+    const auto face = static_cast<std::size_t>(2 * axis);
+    const bool lower_open = scene.medium.faces[face] == FaceBoundary::open,
+               upper_open = scene.medium.faces[face + 1] == FaceBoundary::open;
+    if (!empty_ambient(scene) || (!lower_open && !upper_open)) return std::nullopt;
+    // Towards the open end, by whole coarse voxels if that end is the lower one, so that voxels stay aligned.
+    if (!upper_open) coarse.origin[axis] -= float(growth) * fine.voxel_size;
+  }
+  Scene result = scene;
+  result.medium.frame = coarse;
+  return result;
+}
+
+Scene finer_scene(const Scene& scene, int times) {
+  Scene result = scene;
+  result.medium.frame.voxels *= times;
+  result.medium.frame.voxel_size /= float(times);
+  return result;
+}
+
+SampledFluence sample_fluence(const FluenceVolume& volume, const MediumVolume& medium) {
+  std::vector<LocalMedium> media = local_media(volume, medium);
+  FluenceVolume total = total_fluence(volume, media);
+  return {std::move(total), std::move(media)};
+}
+
+std::vector<std::vector<float>> common_values(const SampledFluence& coarse,
+                                              const std::vector<const SampledFluence*>& fine) {
+  std::vector<std::vector<float>> values(1 + fine.size());
+  if (fine.empty()) return values;
+  std::vector<Alignment> to_fine;
+  std::vector<std::vector<std::size_t>> at(fine.size());  // of the finer voxels of one coarse voxel, per grid
+  for (const SampledFluence* each : fine) {
+    to_fine.push_back(align(coarse.total.frame, each->total.frame));
+    at[to_fine.size() - 1].resize(static_cast<std::size_t>(std::pow(to_fine.back().times, 3) + 0.5));
+  }
+  const std::size_t coarse_stride = coarse.total.colour_stride();
+  for (int block = 0; block < coarse.total.blocks.count(); ++block)
+    for (int v = 0; v < coarse.total.blocks.voxels_per_block(); ++v) {
+      const std::size_t i = std::size_t(block) * coarse.total.blocks.voxels_per_block() + v;
+      if (!coarse.media[i].participates) continue;
+      const glm::ivec3 voxel = coarse.total.blocks.coordinates(block) * kBlockEdge +
+                               glm::ivec3(v % kBlockEdge, v / kBlockEdge % kBlockEdge, v / (kBlockEdge * kBlockEdge));
+      bool whole = true;
+      for (std::size_t f = 0; f < fine.size() && whole; ++f) {
+        const int times = to_fine[f].times;
+        for (int child = 0; child < static_cast<int>(at[f].size()) && whole; ++child) {
+          const glm::ivec3 within(child % times, child / times % times, child / (times * times));
+          const std::size_t j = index_of(fine[f]->total, voxel * times + within + to_fine[f].shift);
+          whole = j != std::size_t(-1) && fine[f]->media[j].participates;
+          at[f][static_cast<std::size_t>(child)] = j;
+        }
+      }
+      if (!whole) continue;
+      for (std::size_t c = 0; c < 3; ++c) {
+        values[0].push_back(coarse.total.fluence[c * coarse_stride + i]);
+        for (std::size_t f = 0; f < fine.size(); ++f) {
+          double sum = 0;
+          for (const std::size_t j : at[f]) sum += fine[f]->total.fluence[c * fine[f]->total.colour_stride() + j];
+          values[1 + f].push_back(static_cast<float>(sum / static_cast<double>(at[f].size())));
+        }
+      }
+    }
+  return values;
+}
+
+double relative_l2(const std::vector<float>& a, const std::vector<float>& b) {
+  double difference = 0, size = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double d = double(a[i]) - double(b[i]);
+    difference += d * d;
+    size += double(b[i]) * double(b[i]);
+  }
+  return difference == 0 ? 0 : std::sqrt(difference / size);
+}
+
+double root_relmse(const std::vector<float>& a, const std::vector<float>& b) {
+  return std::sqrt(measure_errors(a, b).relmse);
+}
+
+}  // namespace turbid

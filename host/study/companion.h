@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The same scene on coarser or finer voxels whose faces coincide, and how far two such fluences lie apart.
+#pragma once
+#include <functional>
+#include <optional>
+
+#include "host/scene/scene.h"
+#include "host/study/total_fluence.h"
+
+namespace turbid {
+
+/// The scene on voxels `times` as large that the finer ones divide; nothing if the domain can't be cut so: open axes
+/// grow to whole blocks where nothing fills the domain, others must hold whole blocks already.
+std::optional<Scene> coarser_scene(const Scene&, int times);
+/// The scene on voxels `times` as small over exactly the same domain.
+Scene finer_scene(const Scene&, int times);
+
+/// Total fluence on its voxels, with who is active.
+struct SampledFluence {
+  FluenceVolume total;
+  std::vector<LocalMedium> media;
+};
+SampledFluence sample_fluence(const FluenceVolume&, const MediumVolume&);
+
+/// Values colour by colour at the voxels of `coarse` whose finer voxels (those of every one of `fine`) are all active:
+/// the fluence of `coarse` first, then the mean of each of `fine`. Each grid is a whole number of times finer than the
+/// coarse one, or as fine, and aligned with it; it may reach further. Throws std::invalid_argument if one is not.
+std::vector<std::vector<float>> common_values(const SampledFluence& coarse,
+                                              const std::vector<const SampledFluence*>& fine);
+
+/// sqrt(sum (a - b)^2 / sum b^2); 0 / 0 is 0.
+double relative_l2(const std::vector<float>& a, const std::vector<float>& b);
+/// Root of `turbid compare`'s relMSE: sqrt(mean (a - b)^2 / (b^2 + (0.1 mean |b|)^2)), how far off a pixel is, relative
+/// to itself. Unlike relative_l2 it is not ruled by a few bright pixels.
+double root_relmse(const std::vector<float>& a, const std::vector<float>& b);
+
+}  // namespace turbid

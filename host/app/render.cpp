@@ -11,6 +11,7 @@
 #include "host/base/errors.h"
 #include "host/report/checksum.h"
 #include "host/report/run_report.h"
+#include "host/study/run_warnings.h"
 
 namespace turbid::app {
 namespace {
@@ -53,6 +54,7 @@ void render(const RenderOptions& options) {
   cl::Session session(choice);
   progress.detail("device " + choice.device.label() + ": " + choice.reason);
   const LightSolution solution = solve_light(session, in, progress);
+  for (const std::string& sentence : run_warnings(solution.report, in.scene.solver)) progress.warn(sentence);
   const ViewImage image = look_at(session, in, solution, progress);
 
   progress.stage("write");

@@ -11,5 +11,6 @@ std::vector<Case> lattice_cases();   ///< cases_lattice.cpp
 std::vector<Case> wave_cases();      ///< cases_waves.cpp
 std::vector<Case> boundary_cases();  ///< cases_boundary.cpp
 std::vector<Case> stopping_cases();  ///< cases_stopping.cpp
+std::vector<Case> hard_media_cases();  ///< hard_media.cpp
 
 }  // namespace turbid::study

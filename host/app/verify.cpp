@@ -5,6 +5,7 @@
 
 #include "host/app/command.h"
 #include "host/app/options.h"
+#include "host/app/verify_paper.h"
 #include "host/base/errors.h"
 #include "host/report/verify_report.h"
 
@@ -14,7 +15,8 @@ namespace {
 struct VerifyOptions : TalkOptions {
   std::vector<std::string> wanted;
   std::string device;
-  bool hard = false, quick = false, list = false;
+  bool hard = false, quick = false, list = false, paper = false;
+  std::string output;  ///< of --paper
 };
 
 /// In the order of the list, each once.
@@ -39,6 +41,7 @@ std::vector<const Case*> chosen_cases(const VerifyOptions& options) {
 }
 
 void verify(const VerifyOptions& options) {
+  if (options.paper) return verify_paper({options, options.device, options.output, options.quick});
   if (options.list) return print(options.json ? case_list_json(cases()) : case_list_text(cases()));
   const std::vector<const Case*> chosen = chosen_cases(options);
   const cl::DeviceChoice choice = cl::choose_device(options.device);
@@ -65,6 +68,11 @@ void add_verify(CLI::App& program, Work& work) {
   command.add_option("CASE", options->wanted, "Numbers or names of cases (default: all that are not hard)");
   command.add_flag("--list", options->list, "List the cases and end");
   command.add_flag("--hard", options->hard, "The hard cases instead: extreme media that must stay stable");
+  CLI::Option* paper = command.add_flag(
+      "--paper", options->paper, "Instead: a report on where the paper's own scheme breaks and what each remedy buys");
+  command.add_option("-o,--output", options->output, "With --paper: folder for paper.html, .json, .csv (default: out/paper)")
+      ->type_name("DIR")
+      ->needs(paper);
   command.add_flag("--quick", options->quick, "Leave out the finest level of each refinement");
   add_device_option(command, options->device);
   add_talk_options(command, *options);
@@ -72,7 +80,7 @@ void add_verify(CLI::App& program, Work& work) {
       "Prints for each case its equation, the expected values with their source, what was got, the tolerance and its\n"
       "reason, and observed orders of convergence with 95 % intervals.\n"
       "Exit status: 0 all passed, 1 a case failed, 2 no such case.\n"
-      "Example:\n  turbid verify 6 luneburg");
+      "Examples:\n  turbid verify 6 luneburg\n  turbid verify --hard\n  turbid verify --paper -o report");
   command.callback([options, &work] { work = [options] { verify(*options); }; });
 }
 

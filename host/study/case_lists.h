@@ -11,6 +11,11 @@ std::vector<Case> lattice_cases();   ///< cases_lattice.cpp
 std::vector<Case> wave_cases();      ///< cases_waves.cpp
 std::vector<Case> boundary_cases();  ///< cases_boundary.cpp
 std::vector<Case> stopping_cases();  ///< cases_stopping.cpp
-std::vector<Case> hard_media_cases();  ///< hard_media.cpp
+std::vector<Case> hard_media_cases();     ///< hard_media.cpp
+std::vector<Case> hard_contrast_cases();  ///< hard_contrast.cpp
+std::vector<Case> hard_void_cases();      ///< hard_voids.cpp
+std::vector<Case> hard_index_cases();     ///< hard_index.cpp
+std::vector<Case> hard_ray_cases();       ///< hard_rays.cpp
+std::vector<Case> hard_shape_cases();     ///< hard_shapes.cpp
 
 }  // namespace turbid::study

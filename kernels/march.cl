@@ -10,6 +10,10 @@
 #include "lib/trace.h"
 #include "shared/march_params.h"
 
+#if !defined(TURBID_FIRST_MOMENT)
+#error "TURBID_FIRST_MOMENT (1: some phase function is anisotropic) must be defined"
+#endif
+
 typedef struct {
   Colour absorbed, deposited, reflected, opaque_surface, in_flight;
   int deposits, interfaces;  // how often
@@ -42,18 +46,24 @@ static void store_ray(global RayState* state, const Ray* ray, Colour power, cons
   state->steps = steps;
 }
 
-// Deposits the scattered part of a loss of power at a point and tallies the rest.
-static void lose(const Medium* medium, Tally* tally, global long* deposit, int region, float3 x, Colour loss,
-                 Extinction sigma, float fixed_per_watt) {
+// Deposits the scattered part of what was lost along the way from `from` to `to`, and tallies the rest.
+static void lose(const Medium* medium, Tally* tally, global long* deposit, global long* flux, size_t flux_stride, int region,
+                 float3 from, float3 to, Colour loss, Extinction sigma, float fixed_per_watt) {
 #if TURBID_SCATTERING
   const int set = medium->regions[region].source_set;
   if (set >= 0) {
-    const Cell cell = locate(x);
+    const Colour sigma_t = sigma.sigma_s + sigma.sigma_a;
+    const Cell cell = locate(from + centre_of_loss(colour_max(sigma_t) * distance(from, to)) * (to - from));
     const int tile = tile_of(medium, set, cell.block);
     if (tile >= 0) {
-      const Colour sigma_t = sigma.sigma_s + sigma.sigma_a;
       const Colour scattered = loss * (sigma.sigma_s / fmax(sigma_t, 1e-30f));
       splat(deposit, tile, cell, scattered, fixed_per_watt);
+#if TURBID_FIRST_MOMENT
+      const float3 direction = (to - from) / fmax(distance(from, to), 1e-12f);
+      splat(flux, tile, cell, scattered * direction.x, fixed_per_watt);
+      splat(flux + flux_stride, tile, cell, scattered * direction.y, fixed_per_watt);
+      splat(flux + 2 * flux_stride, tile, cell, scattered * direction.z, fixed_per_watt);
+#endif
       tally->deposited += scattered;
       ++tally->deposits;
       loss -= scattered;
@@ -77,7 +87,7 @@ static void collect(global long* ground, global int* ground_rays, global long* t
 }
 
 kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, global RayState* next,
-                  global int* next_count, global long* deposit, global long* tallies, global long* ground,
+                  global int* next_count, global long* deposit, global long* flux, global long* tallies, global long* ground,
                   global int* ground_rays, global long* transmitted) {
   const int index = p.first_ray + get_global_id(0);
   if (index >= p.ray_count) return;
@@ -129,13 +139,13 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
       const Extinction sigma = extinction_at(&medium, region, locate(step.middle));
       const Colour loss = power * -expm1(-(sigma.sigma_s + sigma.sigma_a) * step.length);
       power -= loss;
-      lose(&medium, &tally, deposit, region, step.middle, loss, sigma, p.fixed_per_watt);
+      lose(&medium, &tally, deposit, flux, p.flux_stride, region, from, ray.x, loss, sigma, p.fixed_per_watt);
       if (colour_max(power) < floor_power) {
         // Too weak to follow: what is left ends here as if the medium went on.
         const Colour sigma_t = sigma.sigma_s + sigma.sigma_a;
         const Colour ended = sigma_t > 0.0f ? power : none;
         tally.in_flight += power - ended;
-        lose(&medium, &tally, deposit, region, step.middle, ended, sigma, p.fixed_per_watt);
+        lose(&medium, &tally, deposit, flux, p.flux_stride, region, from, ray.x, ended, sigma, p.fixed_per_watt);
         alive = false;
         break;
       }

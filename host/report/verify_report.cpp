@@ -62,7 +62,7 @@ Json check_json(const Check& c) {
   return json;
 }
 
-Json series_json(const Series& s) {
+Json series_json(const ErrorSeries& s) {
   Json levels = Json::array();
   for (const Level& level : s.levels) levels.push_back({{"h", level.h}, {"error", number_or_null(level.error)}});
   Json json{{"parameter", s.parameter},
@@ -108,7 +108,7 @@ std::string verified_case_text(const VerifiedCase& c) {
     if (check.standard_error > 0) text += line(" and 3 x %.2g", check.standard_error);
     text += ": " + check.reason + "\n";
   }
-  for (const Series& s : c.result.series) {
+  for (const ErrorSeries& s : c.result.series) {
     text += line("   %s  order in %s of %s: ", s.passed() ? "pass" : "FAIL", s.parameter.c_str(), s.error_name.c_str());
     if (s.fit) text += line("%.2f (%.2f to %.2f)", s.fit->order, s.fit->low, s.fit->high);
     text += line(", expected %.2f to %.2f; h [%s]", s.order_low, s.order_high, s.unit.c_str());
@@ -139,7 +139,7 @@ std::string verify_json(const VerifyReport& r) {
   for (const VerifiedCase& c : r.cases) {
     Json json = head_json(*c.of), checks = Json::array(), series = Json::array();
     for (const Check& check : c.result.checks) checks.push_back(check_json(check));
-    for (const Series& s : c.result.series) series.push_back(series_json(s));
+    for (const ErrorSeries& s : c.result.series) series.push_back(series_json(s));
     json["passed"] = c.result.passed();
     json["checks"] = checks;
     json["series"] = series;

@@ -25,13 +25,13 @@ bool Check::passed() const {
   return false;
 }
 
-bool Series::passed() const {
+bool ErrorSeries::passed() const {
   return fit && fit->order >= order_low && fit->order <= order_high;
 }
 
 bool CaseResult::passed() const {
   return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.passed(); }) &&
-         std::all_of(series.begin(), series.end(), [](const Series& s) { return s.passed(); });
+         std::all_of(series.begin(), series.end(), [](const ErrorSeries& s) { return s.passed(); });
 }
 
 void CaseResult::relative(const std::string& quantity, double expected, double got, double tolerance,
@@ -71,7 +71,7 @@ void run_refinement(const Refinement& refinement, CaseContext& context, CaseResu
   std::vector<double> levels = refinement.levels;
   if (context.quick && levels.size() > 2) levels.pop_back();
   const std::string variant = refinement.variant.empty() ? "" : ", " + refinement.variant;
-  Series series{refinement.parameter + variant, refinement.unit,      refinement.error_name(), {}, {},
+  ErrorSeries series{refinement.parameter + variant, refinement.unit,      refinement.error_name(), {}, {},
                 refinement.order_low,           refinement.order_high};
   for (const double level : levels) {
     const RefinedLevel found = refinement.run(context, level);
@@ -106,9 +106,10 @@ CaseResult Case::run(CaseContext& context) const {
 const std::vector<Case>& cases() {
   static const std::vector<Case> all = [] {
     std::vector<Case> list;
-    for (const auto make : {study::lattice_cases, study::wave_cases, study::boundary_cases, study::stopping_cases, study::hard_media_cases,
-                            study::hard_contrast_cases, study::hard_void_cases, study::hard_index_cases,
-                            study::hard_ray_cases, study::hard_shape_cases})
+    for (const auto make :
+         {study::lattice_cases, study::wave_cases, study::boundary_cases, study::beam_cases, study::path_cases,
+          study::surface_cases, study::stopping_cases, study::hard_media_cases, study::hard_contrast_cases,
+          study::hard_void_cases, study::hard_index_cases, study::hard_ray_cases, study::hard_shape_cases})
       for (Case& one : make()) list.push_back(std::move(one));
     const auto rank = [](const Case& c) { return c.number > 0 ? c.number : std::numeric_limits<int>::max(); };
     std::stable_sort(list.begin(), list.end(), [&](const Case& a, const Case& b) { return rank(a) < rank(b); });

@@ -45,7 +45,7 @@ struct Check {
 };
 
 /// An error that should fall as h^order.
-struct Series {
+struct ErrorSeries {
   std::string parameter, unit;  ///< what was refined, and the unit of h
   std::string error_name;
   std::vector<Level> levels;  ///< coarse to fine
@@ -57,7 +57,7 @@ struct Series {
 
 struct CaseResult {
   std::vector<Check> checks;
-  std::vector<Series> series;
+  std::vector<ErrorSeries> series;
   std::vector<std::string> notes;  ///< sentences
   double energy_imbalance = 0;     ///< largest relative one of all its runs; 0 if it follows no energy
   double seconds = 0;

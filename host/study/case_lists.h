@@ -10,6 +10,9 @@ namespace turbid::study {
 std::vector<Case> lattice_cases();   ///< cases_lattice.cpp
 std::vector<Case> wave_cases();      ///< cases_waves.cpp
 std::vector<Case> boundary_cases();  ///< cases_boundary.cpp
+std::vector<Case> beam_cases();      ///< cases_beam.cpp
+std::vector<Case> path_cases();      ///< cases_paths.cpp
+std::vector<Case> surface_cases();   ///< cases_surfaces.cpp
 std::vector<Case> stopping_cases();  ///< cases_stopping.cpp
 std::vector<Case> hard_media_cases();     ///< hard_media.cpp
 std::vector<Case> hard_contrast_cases();  ///< hard_contrast.cpp

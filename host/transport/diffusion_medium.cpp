@@ -57,6 +57,7 @@ void fill_block(DiffusionMedium& out, const MediumVolume& medium, int block, con
       index = values[v];
     }
     out.eta_squared[at] = index * index;
+    if (!out.g_star.empty()) out.g_star[at] = k.g / (1.0f + k.g);
     for (int c = 0; c < out.channels; ++c) {
       const std::size_t i = out.index(c, block, v);
       const int colour = first_colour + c;
@@ -199,7 +200,8 @@ BlockFaces faces_of_block(const DiffusionMedium& out, const MediumVolume& medium
           a = moments.extrapolation(inside, rounded_eta(beyond.eta));
         }
       }
-      BoundaryFace boundary{block, static_cast<std::int16_t>(v), static_cast<std::int8_t>(face), boundary_is_opaque, {}};
+      BoundaryFace boundary{block, static_cast<std::int16_t>(v), static_cast<std::int8_t>(face), boundary_is_opaque,
+                            cut.distance, {}};
       for (int c = 0; c < out.channels; ++c) {
         const double value = (2.0 * a / 3.0) / cut.normal + out.s[out.index(c, block, v)] * (cut.distance - 0.5);
         boundary.c[c] = static_cast<float>(std::max(value, 0.02));
@@ -231,12 +233,15 @@ DiffusionMedium make_diffusion_medium(const MediumVolume& medium, int channels, 
   const std::size_t stride = out.stride();
   out.region.assign(stride, -1);
   out.eta_squared.assign(stride, 1.0f);
+  for (int r = 0; r < medium.region_count(); ++r)
+    if (medium.region(r).g != 0.0f || medium.region(r).heterogeneous) out.g_star.assign(stride, 0.0f);
   out.s.assign(stride * channels, 0.0f);
   out.s_a.assign(stride * channels, 0.0f);
   out.emission.assign(stride * channels, 0.0f);
   parallel_ranges(out.blocks.count(), [&](int begin, int end) {
     for (int block = begin; block < end; ++block) fill_block(out, medium, block, floors, first_colour);
   });
+  if (std::all_of(out.g_star.begin(), out.g_star.end(), [](float g) { return g == 0.0f; })) out.g_star.clear();
   std::vector<BlockFaces> faces(out.blocks.count());
   MomentCache moments;
   parallel_ranges(out.blocks.count(), [&](int begin, int end) {

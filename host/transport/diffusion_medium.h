@@ -23,6 +23,7 @@ struct BoundaryFace {
   std::int16_t voxel;    ///< within the block, x fastest
   std::int8_t face;      ///< 0..5: -x, +x, -y, +y, -z, +z
   bool opaque;           ///< towards an opaque body, which absorbs what comes
+  float distance;        ///< d_a, from the voxel's centre to the surface along the axis [voxels], in [0, 1]
   float c[3];            ///< per channel, >= 0.02
 };
 
@@ -45,6 +46,7 @@ struct DiffusionMedium {
   std::vector<std::int16_t> region;      ///< [block][voxel]; -1: not active
   std::vector<float> hat_volume;         ///< [block][voxel]: integral of the voxel's trilinear weight over its region [voxels]
   std::vector<float> eta_squared;        ///< [block][voxel]
+  std::vector<float> g_star;             ///< [block][voxel]: g / (1 + g), what delta-Eddington leaves; empty: all 0
   std::vector<float> s, s_a, emission;   ///< [channel][block][voxel]; s floored for voids; emission [W/voxel]
   std::vector<BoundaryFace> boundary;
   std::vector<JumpFace> jumps;

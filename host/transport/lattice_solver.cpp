@@ -21,7 +21,7 @@ void LatticeSolver::march_all(March& march) {
     context_.session.lattice_queue().finish();
     if (march.rays_left() > 0) {
       const LightSource so_far =
-          gather_source(march.read_deposit(), march.watts_per_unit(), device_medium(), diffusion_medium());
+          gather_source(march.read_deposit(), march.read_flux(), march.watts_per_unit(), device_medium(), diffusion_medium());
       lattice_->set_source(so_far.power);
     }
     context_.progress.update(march_progress(march));

@@ -12,6 +12,7 @@ constexpr int kEdge = 8, kVoxels = 512, kTileEdge = TURBID_TILE_EDGE;
 struct Target {
   std::size_t at;
   float weight;
+  glm::ivec3 offset;  // of the node from the voxel, in voxels
 };
 
 /// Active voxels of region r within `reach` of a voxel, with weights 1 / distance^2.
@@ -27,17 +28,27 @@ std::vector<Target> nearest(const DiffusionMedium& medium, glm::ivec3 voxel, int
         const glm::ivec3 local = v % kEdge;
         const std::size_t at = block * std::size_t{kVoxels} + local.x + kEdge * (local.y + kEdge * local.z);
         if (medium.region[at] != region) continue;
-        targets.push_back({at, 1.0f / static_cast<float>(dx * dx + dy * dy + dz * dz)});
+        targets.push_back({at, 1.0f / static_cast<float>(dx * dx + dy * dy + dz * dz), {-dx, -dy, -dz}});
       }
     }
   }
   return targets;
 }
 
+/// Active voxels of the region that a node outside its own voxels belongs to.
+std::vector<Target> targets_of(const DiffusionMedium& medium, glm::ivec3 node, int region) {
+  std::vector<Target> targets = nearest(medium, node, region, 1);
+  for (int reach = 2; targets.empty() && reach <= 3; ++reach) targets = nearest(medium, node, region, reach);
+  double total = 0;
+  for (const Target& target : targets) total += target.weight;
+  for (Target& target : targets) target.weight = static_cast<float>(target.weight / total);
+  return targets;
+}
+
 }  // namespace
 
-LightSource gather_source(const std::vector<std::int64_t>& deposit, double watts_per_unit, const DeviceMedium& device,
-                          const DiffusionMedium& medium) {
+LightSource gather_source(const std::vector<std::int64_t>& deposit, const std::vector<std::int64_t>& flux,
+                          double watts_per_unit, const DeviceMedium& device, const DiffusionMedium& medium) {
   const int channels = medium.channels;
   const std::size_t stride = medium.stride();
   LightSource source;
@@ -47,7 +58,11 @@ LightSource gather_source(const std::vector<std::int64_t>& deposit, double watts
     for (std::size_t i = 0; i < stride; ++i) source.emitted[c] += source.power[c * stride + i];
   }
   // Copies of a node in neighbouring tiles are added in double precision before anything is rounded.
+  const bool moments = !flux.empty() && !medium.g_star.empty();
   std::vector<double> own(stride * channels, 0.0), foreign(stride * channels, 0.0);
+  std::vector<double> moment(moments ? 3 * stride * channels : 0, 0.0);
+  const BoundaryIndex boundary(medium);
+  const std::size_t nodes = device.source_tiles.size() * TURBID_TILE_NODES;
   for (std::size_t tile = 0; tile < device.source_tiles.size(); ++tile) {
     const SourceTile& where = device.source_tiles[tile];
     const std::int64_t* node = deposit.data() + tile * TURBID_TILE_NODES * channels;
@@ -61,18 +76,39 @@ LightSource gather_source(const std::vector<std::int64_t>& deposit, double watts
       const int block = medium.blocks.find(inside / kEdge);
       const glm::ivec3 local = inside % kEdge;
       const std::size_t at = block < 0 ? 0 : block * std::size_t{kVoxels} + local.x + kEdge * (local.y + kEdge * local.z);
+      const auto add_moment = [&](std::size_t to, double share) {
+        if (!moments) return;
+        const std::size_t from = (tile * TURBID_TILE_NODES + i) * channels;
+        for (int axis = 0; axis < 3; ++axis)
+          for (int c = 0; c < channels; ++c)
+            moment[(axis * channels + c) * stride + to] += medium.g_star[to] * share * watts_per_unit *
+                                                           static_cast<double>(flux[axis * nodes * channels + from + c]);
+      };
       if (block >= 0 && medium.region[at] == where.region) {
         for (int c = 0; c < channels; ++c) own[c * stride + at] += watts_per_unit * static_cast<double>(node[c]);
+        add_moment(at, 1);
         continue;
       }
-      std::vector<Target> targets = nearest(medium, inside, where.region, 1);
-      for (int reach = 2; targets.empty() && reach <= 3; ++reach) targets = nearest(medium, inside, where.region, reach);
-      double total = 0;
-      for (const Target& target : targets) total += target.weight;
-      for (int c = 0; c < channels; ++c) {
-        const double power = watts_per_unit * static_cast<double>(node[c]);
-        if (targets.empty()) source.unresolved[c] += power;
-        for (const Target& target : targets) foreign[c * stride + target.at] += power * target.weight / total;
+      const std::vector<Target> targets = targets_of(medium, inside, where.region);
+      for (int c = 0; c < channels && targets.empty(); ++c)
+        source.unresolved[c] += watts_per_unit * static_cast<double>(node[c]);
+      for (const Target& target : targets) {
+        add_moment(target.at, target.weight);
+        for (int c = 0; c < channels; ++c) {
+          const double power = watts_per_unit * static_cast<double>(node[c]) * target.weight;
+          double stays = power;
+          for (int axis = 0; axis < 3; ++axis) {
+            const int distance = std::abs(target.offset[axis]);
+            if (distance != 1) continue;  // farther nodes only where a part is thinner than a voxel
+            const BoundaryFace* face = boundary.find(target.at, 2 * axis + (target.offset[axis] > 0));
+            if (!face) continue;
+            const double leaves = power * share_beyond(medium, *face, c, 1);
+            source.left.add(*face, c, leaves);
+            stays -= leaves;
+          }
+          source.deposited[c] += power - stays;
+          foreign[c * stride + target.at] += stays;
+        }
       }
     }
   }
@@ -80,10 +116,12 @@ LightSource gather_source(const std::vector<std::int64_t>& deposit, double watts
     for (std::size_t i = 0; i < stride; ++i) {
       const std::size_t at = c * stride + i;
       source.deposited[c] += own[at] + foreign[at];
-      source.power[at] += static_cast<float>(own[at] + foreign[at]);
       source.density[at] = static_cast<float>(own[at] / medium.hat_volume[i]);
+      foreign[at] += own[at];
     }
   }
+  if (moments) add_first_moment(medium, moment, foreign, source.left);
+  for (std::size_t at = 0; at < foreign.size(); ++at) source.power[at] += static_cast<float>(foreign[at]);
   source.deposited += source.unresolved;
   return source;
 }

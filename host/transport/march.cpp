@@ -24,7 +24,10 @@ glm::dvec3 colour_at(const std::vector<std::int64_t>& sums, std::size_t index, d
 March::March(cl::Session& session, const DeviceMedium& medium, const MarchSettings& settings,
              const std::array<FaceBoundary, 6>& faces, const Surroundings& surroundings)
     : session_(session), medium_(medium), settings_(settings) {
-  program_ = session.build("march.cl", medium.defines());
+  const bool moments = medium.features.anisotropic && medium.features.scattering;
+  std::vector<cl::Define> defines = medium.defines();
+  defines.push_back({"TURBID_FIRST_MOMENT", moments});
+  program_ = session.build("march.cl", defines);
   kernel_ = decltype(kernel_)(program_, "march");
   params_.step = settings.step_in_voxels;
   params_.batch_steps = settings.batch_steps;
@@ -46,6 +49,8 @@ March::March(cl::Session& session, const DeviceMedium& medium, const MarchSettin
   }
   const std::size_t channels = medium.features.channels;
   deposit_ = session.allocate<std::int64_t>(medium.source_tiles.size() * TURBID_TILE_NODES * channels);
+  params_.flux_stride = static_cast<int>(deposit_.count());
+  flux_ = session.allocate<std::int64_t>(moments ? 3 * deposit_.count() : 0);
   tallies_ = session.allocate<std::int64_t>(3 * TURBID_TALLY_COUNT);
   const std::size_t texels = static_cast<std::size_t>(params_.ground_size) * params_.ground_size;
   ground_ = session.allocate<std::int64_t>(texels * channels);
@@ -69,6 +74,7 @@ void March::start(const LightRays& light) {
   if (rays_.count() < ray_count_) rays_ = session_.allocate<RayState>(ray_count_);
   session_.write(session_.march_queue(), rays_, std::span<const RayState>(light.rays));
   session_.fill_zero(session_.march_queue(), deposit_);
+  session_.fill_zero(session_.march_queue(), flux_);
   session_.fill_zero(session_.march_queue(), tallies_);
   session_.fill_zero(session_.march_queue(), ground_);
   session_.fill_zero(session_.march_queue(), ground_rays_);
@@ -90,7 +96,7 @@ void March::enqueue_piece() {
   const std::size_t count = std::min<std::size_t>(kRaysPerLaunch, ray_count_ - params_.first_ray);
   kernel_.enqueue(queue, {count}, {64}, medium_.regions_buffer, medium_.tile_map_buffer, medium_.block_region_buffer,
                   medium_.distance_tiles, medium_.index_tiles, medium_.coefficient_tiles, params_, rays_, next_,
-                  next_count_, deposit_, tallies_, ground_, ground_rays_, transmitted_);
+                  next_count_, deposit_, flux_, tallies_, ground_, ground_rays_, transmitted_);
   cl::check(clFlush(queue.get()), "starting the march");
   params_.first_ray += kRaysPerLaunch;
 }
@@ -108,6 +114,8 @@ bool March::finish_batch(const std::function<void()>& between) {
 }
 
 std::vector<std::int64_t> March::read_deposit() { return session_.read(session_.march_queue(), deposit_); }
+
+std::vector<std::int64_t> March::read_flux() { return session_.read(session_.march_queue(), flux_); }
 
 MarchTallies March::read_tallies() {
   const std::vector<std::int64_t> sums = session_.read(session_.march_queue(), tallies_);

@@ -34,6 +34,9 @@ class March {
 
   /// Deposits in watts on the nodes of the source tiles: [tile][node][channel].
   std::vector<std::int64_t> read_deposit();
+  /// Where phase functions are anisotropic: the deposits times the direction of the light, [axis][tile][node][channel];
+  /// empty elsewhere.
+  std::vector<std::int64_t> read_flux();
   double watts_per_unit() const { return 1.0 / fixed_per_watt_; }
   MarchTallies read_tallies();
   GroundLight read_ground();
@@ -51,11 +54,12 @@ class March {
   cl::Program program_;
   cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>,
              cl::Buffer<float>, MarchParams, cl::Buffer<RayState>, cl::Buffer<RayState>, cl::Buffer<int>,
-             cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<int>, cl::Buffer<std::int64_t>>
+             cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>,
+             cl::Buffer<int>, cl::Buffer<std::int64_t>>
       kernel_;
   cl::Buffer<RayState> rays_, next_;
   cl::Buffer<int> next_count_, ground_rays_;
-  cl::Buffer<std::int64_t> deposit_, tallies_, ground_, transmitted_;
+  cl::Buffer<std::int64_t> deposit_, flux_, tallies_, ground_, transmitted_;
   std::size_t ray_count_ = 0;
   int batches_ = 0;
   double fixed_per_watt_ = 1;

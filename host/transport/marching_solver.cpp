@@ -92,7 +92,7 @@ LightSolution MarchingSolver::light(const LightList& lights) {
   DiffuseLight diffuse_light;
   diffuse_light.fluence.assign(stride * channels, 0.0f);
   if (context_.features.scattering) {
-    source = gather_source(march_->read_deposit(), march_->watts_per_unit(), *device_, diffusion);
+    source = gather_source(march_->read_deposit(), march_->read_flux(), march_->watts_per_unit(), *device_, diffusion);
     diffuse_light = diffuse(source);
   }
 
@@ -115,10 +115,10 @@ LightSolution MarchingSolver::light(const LightList& lights) {
   energy.missed = rays.missed;
   energy.reflected = tallies.reflected;
   energy.absorbed = tallies.absorbed + diffuse_light.absorbed;
-  energy.absorbed_opaque = rays.absorbed_opaque + tallies.opaque + diffuse_light.absorbed_opaque;
+  energy.absorbed_opaque = rays.absorbed_opaque + tallies.opaque + diffuse_light.absorbed_opaque + source.left.absorbed_opaque;
   energy.in_flight = tallies.in_flight + source.unresolved + diffuse_light.stored;
   for (int face = 0; face < 6; ++face) {
-    energy.escaped_faces[face] = tallies.escaped[face] + diffuse_light.escaped[face];
+    energy.escaped_faces[face] = tallies.escaped[face] + diffuse_light.escaped[face] + source.left.escaped[face];
     energy.escaped += energy.escaped_faces[face];
   }
 

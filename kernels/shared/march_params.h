@@ -46,7 +46,8 @@ typedef struct {
   float ground_origin[2]; // lower corner of the collecting map (x, z) [voxels]
   float ground_texel;     // edge of its texels [voxels]
   int ground_size;        // texels per side
+  int flux_stride;        // numbers per axis of the deposits' first moment
 } MarchParams;
-TURBID_ASSERT_SIZE(MarchParams, 80);
+TURBID_ASSERT_SIZE(MarchParams, 84);
 
 #endif

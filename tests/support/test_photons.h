@@ -1,41 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Monte Carlo runs for tests: any medium, sources given one by one, results with their standard errors.
+// host/study's photon runs on the tests' session.
 #pragma once
-#include <functional>
-
-#include "host/transport/photon_solver.h"
+#include "host/study/photon_runs.h"
 #include "tests/support/test_media.h"
 
 namespace turbid::test {
 
-struct PhotonAnswer {
-  LightSolution solution;
-  std::vector<std::int16_t> region;  ///< [block][voxel], -1: not active
-  std::vector<float> sigma_s;        ///< as the first flight sees it, colour 0 [1/scene unit]
-  double seconds = 0;                ///< following photons
+using study::PhotonAnswer, study::photons, study::pull, study::slab, study::source;
 
-  const PhotonTallies& tallies() const { return *solution.report.photon; }
-  /// Scattered and unscattered light of colour 0, and its standard error [W/scene unit^2].
-  double fluence(std::size_t at) const;
-  double error(std::size_t at) const { return solution.volume.standard_error[at]; }
-  glm::ivec3 voxel(std::size_t at) const;
-};
-
-/// Settings of a run of so many photons.
-SolverSettings photons(std::int64_t count, std::uint64_t seed = 0, int batches = 32);
-
-/// One source of 1 W. Positions in voxels.
-PhotonSource source(int kind, glm::vec3 position, glm::vec3 direction = {0, 0, 1}, int region = 0);
-
-PhotonAnswer follow(const MediumDescription&, const SolverSettings&, const std::vector<PhotonSource>&);
-PhotonAnswer follow(const MediumDescription&, const SolverSettings&, const LightList&, const Surroundings& = {});
-
-/// A domain of 8 x 8 x n voxels of edge `voxel`, open towards -z and +z, periodic else.
-MediumDescription slab(int n, float voxel, const Material&);
-
-/// Standard errors that lie between a value and what it should be.
-inline double pull(const Estimate& estimate, double expected, int colour = 0) {
-  return (estimate.value[colour] - expected) / estimate.error[colour];
+inline PhotonAnswer follow(const MediumDescription& description, const SolverSettings& settings,
+                           const std::vector<PhotonSource>& sources) {
+  return study::follow(session(), description, settings, sources);
+}
+inline PhotonAnswer follow(const MediumDescription& description, const SolverSettings& settings, const LightList& lights,
+                           const Surroundings& surroundings = {}) {
+  return study::follow(session(), description, settings, lights, surroundings);
 }
 
 }  // namespace turbid::test

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the photon solver on small media.
-#include "tests/support/test_photons.h"
+// See photon_runs.h.
+#include "host/study/photon_runs.h"
 
-namespace turbid::test {
+namespace turbid::study {
 namespace {
 
 template <class Answer>
-PhotonAnswer with_solver(const MediumDescription& description, const SolverSettings& settings, const LightList& lights,
+PhotonAnswer with_solver(cl::Session& session, const MediumDescription& description, const SolverSettings& settings, const LightList& lights,
                          const Surroundings& surroundings, const Answer& answer) {
   const MediumVolume medium = voxelise(description);
   Progress progress(Verbosity::quiet);
-  PhotonSolver solver({.session = session(), .progress = progress, .settings = settings, .features = scene_features(medium, lights),
+  PhotonSolver solver({.session = session, .progress = progress, .settings = settings, .features = scene_features(medium, lights),
                        .description = description, .surroundings = surroundings});
   solver.prepare(medium);
   const double started = wall_time();
   LightSolution solution = answer(solver);
   PhotonAnswer out{.solution = std::move(solution), .region = {}, .sigma_s = {}, .seconds = wall_time() - started};
-  const PhotonMedium active = upload_photon_medium(session(), medium, solver.device_medium());
+  const PhotonMedium active = upload_photon_medium(session, medium, solver.device_medium());
   out.region = active.region;
   for (const glm::vec3& sigma_s : active.sigma_s) out.sigma_s.push_back(sigma_s.x / medium.frame().voxel_size);
   return out;
@@ -57,8 +57,8 @@ PhotonSource source(int kind, glm::vec3 position, glm::vec3 direction, int regio
   return result;
 }
 
-PhotonAnswer follow(const MediumDescription& description, const SolverSettings& settings, const std::vector<PhotonSource>& sources) {
-  return with_solver(description, settings, {}, {}, [&](PhotonSolver& solver) {
+PhotonAnswer follow(cl::Session& session, const MediumDescription& description, const SolverSettings& settings, const std::vector<PhotonSource>& sources) {
+  return with_solver(session, description, settings, {}, {}, [&](PhotonSolver& solver) {
     PhotonSources all;
     for (const PhotonSource& one : sources) all.add(one, {1, 1, 1});
     all.emitted = all.carried();
@@ -66,9 +66,9 @@ PhotonAnswer follow(const MediumDescription& description, const SolverSettings& 
   });
 }
 
-PhotonAnswer follow(const MediumDescription& description, const SolverSettings& settings, const LightList& lights,
+PhotonAnswer follow(cl::Session& session, const MediumDescription& description, const SolverSettings& settings, const LightList& lights,
                     const Surroundings& surroundings) {
-  return with_solver(description, settings, lights, surroundings, [&](PhotonSolver& solver) { return solver.light(lights); });
+  return with_solver(session, description, settings, lights, surroundings, [&](PhotonSolver& solver) { return solver.light(lights); });
 }
 
 MediumDescription slab(int n, float voxel, const Material& material) {
@@ -78,4 +78,4 @@ MediumDescription slab(int n, float voxel, const Material& material) {
   return description;
 }
 
-}  // namespace turbid::test
+}  // namespace turbid::study

@@ -8,7 +8,7 @@
 
 #include "host/app/options.h"
 #include "host/base/progress.h"
-#include "host/report/medium_survey.h"
+#include "host/study/medium_survey.h"
 #include "host/report/run_report.h"
 #include "host/study/scene_run.h"
 

@@ -12,6 +12,7 @@
 #include "host/report/checksum.h"
 #include "host/report/run_report.h"
 #include "host/study/picture_metadata.h"
+#include "host/study/run_warnings.h"
 
 namespace turbid::app {
 namespace {
@@ -39,6 +40,7 @@ void render(const RenderOptions& options) {
   cl::Session session(choice);
   progress.detail("device " + choice.device.label() + ": " + choice.reason);
   const LightSolution solution = solve_light(session, in, progress);
+  for (const std::string& sentence : run_warnings(solution.report, in.scene.solver)) progress.warn(sentence);
   const ViewImage image = look_at(session, in, solution, progress);
   const std::optional<ErrorEstimate> error = estimate_error(session, in, solution, true, progress);
 

@@ -7,6 +7,7 @@
 #include "host/app/output.h"
 #include "host/app/pipeline.h"
 #include "host/report/run_report.h"
+#include "host/study/run_warnings.h"
 
 namespace turbid::app {
 namespace {
@@ -25,6 +26,7 @@ void solve(const SolveOptions& options) {
   cl::Session session(choice);
   progress.detail("device " + choice.device.label() + ": " + choice.reason);
   const LightSolution solution = solve_light(session, in, progress);
+  for (const std::string& sentence : run_warnings(solution.report, in.scene.solver)) progress.warn(sentence);
   const std::optional<ErrorEstimate> error = estimate_error(session, in, solution, false, progress);
   progress.stage("write");
   const FolderInUse folder(output.parent_path());

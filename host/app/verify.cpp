@@ -6,6 +6,7 @@
 
 #include "host/app/command.h"
 #include "host/app/options.h"
+#include "host/app/verify_paper.h"
 #include "host/base/errors.h"
 #include "host/report/verify_report.h"
 
@@ -15,7 +16,7 @@ namespace {
 struct VerifyOptions : TalkOptions {
   std::vector<std::string> wanted;
   std::string device, output;
-  bool hard = false, quick = false, list = false;
+  bool hard = false, quick = false, list = false, paper = false;
 };
 
 /// In the order of the list, each once.
@@ -46,6 +47,7 @@ std::string report_prefix(const std::string& wanted) {
 }
 
 void verify(const VerifyOptions& options) {
+  if (options.paper) return verify_paper({options, options.device, options.output, options.quick});
   if (options.list) return print(options.json ? case_list_json(cases()) : case_list_text(cases()));
   const std::vector<const Case*> chosen = chosen_cases(options);
   const std::string prefix = report_prefix(options.output);
@@ -78,10 +80,13 @@ void add_verify(CLI::App& program, Work& work) {
   command.add_option("CASE", options->wanted, "Numbers or names of cases (default: all that are not hard)");
   command.add_flag("--list", options->list, "List the cases and end");
   command.add_flag("--hard", options->hard, "The hard cases instead: extreme media that must stay stable");
+  command.add_flag("--paper", options->paper,
+                   "Instead: a report on where the paper's own scheme breaks and what each remedy buys");
   command.add_flag("--quick", options->quick, "Leave out the finest level of each refinement");
   command
       .add_option("-o,--output", options->output,
-                  "Also write PREFIX.html, PREFIX.json and a CSV file per table; into a folder: DIR/verify.html, ...")
+                  "Also write PREFIX.html, PREFIX.json and a CSV file per table; into a folder: DIR/verify.html, ...; "
+                  "with --paper: the folder (default: out/paper)")
       ->type_name("PREFIX");
   add_device_option(command, options->device);
   add_talk_options(command, *options);
@@ -89,7 +94,7 @@ void add_verify(CLI::App& program, Work& work) {
       "Prints for each case its equation, the expected values with their source, what was got, the tolerance and its\n"
       "reason, and observed orders of convergence with 95 % intervals.\n"
       "Exit status: 0 all passed, 1 a case failed, 2 no such case.\n"
-      "Example:\n  turbid verify 6 luneburg");
+      "Examples:\n  turbid verify 6 luneburg\n  turbid verify --hard\n  turbid verify --paper -o report");
   command.callback([options, &work] { work = [options] { verify(*options); }; });
 }
 

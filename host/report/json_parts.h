@@ -5,7 +5,7 @@
 #include <string>
 
 #include "host/cl/device.h"
-#include "host/report/medium_survey.h"
+#include "host/study/medium_survey.h"
 #include "host/scene/features.h"
 #include "host/scene/scene.h"
 

@@ -7,7 +7,7 @@
 
 #include "host/base/progress.h"
 #include "host/cl/device.h"
-#include "host/report/medium_survey.h"
+#include "host/study/medium_survey.h"
 #include "host/report/named_texts.h"
 #include "host/scene/features.h"
 #include "host/scene/scene.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/cl/device.h"
-#include "host/report/medium_survey.h"
+#include "host/study/medium_survey.h"
 #include "host/scene/features.h"
 #include "host/scene/scene.h"
 

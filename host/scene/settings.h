@@ -28,7 +28,7 @@ struct LatticeSettings {
 
 struct SteadySettings {
   float tolerance = 1e-4f;          ///< estimated relative error in the energy norm, in [1e-6, 0.1]
-  int max_iterations = 60;          ///< conjugate-gradient steps at the most; >= 1
+  int max_iterations = 200;          ///< conjugate-gradient steps at the most; >= 1
   int smoothing_sweeps = 2;         ///< red-black sweeps per block with frozen interface; 1..8
 };
 

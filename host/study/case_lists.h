@@ -16,5 +16,11 @@ std::vector<Case> surface_cases();    ///< cases_surfaces.cpp
 std::vector<Case> transport_cases();  ///< cases_transport.cpp
 std::vector<Case> view_cases();       ///< cases_view.cpp
 std::vector<Case> stopping_cases();   ///< cases_stopping.cpp
+std::vector<Case> hard_media_cases();     ///< hard_media.cpp
+std::vector<Case> hard_contrast_cases();  ///< hard_contrast.cpp
+std::vector<Case> hard_void_cases();      ///< hard_voids.cpp
+std::vector<Case> hard_index_cases();     ///< hard_index.cpp
+std::vector<Case> hard_ray_cases();       ///< hard_rays.cpp
+std::vector<Case> hard_shape_cases();     ///< hard_shapes.cpp
 
 }  // namespace turbid::study

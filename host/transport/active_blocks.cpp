@@ -2,6 +2,8 @@
 // Which regions diffuse light spreads in, and which blocks hold them.
 #include <algorithm>
 #include <array>
+#include <set>
+#include <utility>
 
 #include "host/base/parallel.h"
 #include "host/transport/diffusion_medium.h"
@@ -25,7 +27,9 @@ std::vector<float> floors_of_s(const MediumVolume& medium) {
     else any_clear |= r > 0 && !medium.region(r).opaque;
   }
   if (!any_clear) return floors;
-  // Clear bodies that touch nothing but scattering regions: found by what each voxel's upper neighbours are.
+  // Clear bodies that touch nothing but scattering regions and each other: found by what each voxel's upper neighbours are.
+  const auto clear_body = [&](int r) { return r > 0 && floors[r] < 0.0f && !medium.region(r).opaque; };
+  std::set<std::pair<int, int>> joined;
   std::vector<char> open(floors.size(), 0);
   std::vector<glm::ivec3> low(floors.size(), n), high(floors.size(), glm::ivec3(-1));
   open[0] = 1;
@@ -43,11 +47,23 @@ std::vector<float> floors_of_s(const MediumVolume& medium) {
         }
         for (int axis = 0; axis < 3; ++axis) {
           if (here == upper[axis]) continue;
+          if (clear_body(here) && clear_body(upper[axis])) {
+            joined.insert(std::minmax(here, upper[axis]));
+            continue;
+          }
           for (const auto& [a, b] : {std::pair(here, upper[axis]), std::pair(upper[axis], here)}) {
             if (a >= 0 && (b < 0 || floors[b] < 0.0f)) open[a] = 1;
           }
         }
       }
+    }
+  }
+  // A void that opens into another one lets out what the other lets out.
+  for (bool more = true; more;) {
+    more = false;
+    for (const auto& [a, b] : joined) {
+      more |= open[a] != open[b];
+      open[a] = open[b] = open[a] | open[b];
     }
   }
   for (int r = 1; r < medium.region_count(); ++r) {

@@ -37,7 +37,8 @@ struct DeviceMedium {
 DeviceMedium upload_medium(cl::Session&, const MediumVolume&, const SceneFeatures&);
 
 /// First-flight coefficients of forward scattering: the delta-Eddington share f = g^2 counts as not scattered
-/// (Joseph, Wiscombe and Weinman 1976): sigma_s* = (1 - g^2) sigma_s.
-inline glm::vec3 delta_scaled(glm::vec3 sigma_s, float g) { return sigma_s * (1.0f - g * g); }
+/// (numerics section 4); the rest scatters with g* = g / (1 + g). Backward scattering has no forward peak to set aside, and
+/// g* would leave (-1, 1): f = 0.
+inline glm::vec3 delta_scaled(glm::vec3 sigma_s, float g) { return sigma_s * (g > 0.0f ? 1.0f - g * g : 1.0f); }
 
 }  // namespace turbid

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One pass over the blocks of a medium. Sums and maxima only, so the order of threads does not matter.
-#include "host/report/medium_survey.h"
+#include "host/study/medium_survey.h"
 
 #include <algorithm>
 #include <array>
@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "host/base/parallel.h"
+#include "host/transport/device_medium.h"
 
 namespace turbid {
 namespace {
@@ -49,11 +50,17 @@ class Histogram {
   std::uint64_t count_ = 0;
 };
 
+/// Of larger magnitude; of two equal ones the positive, whatever the order.
+float stronger(float a, float b) {
+  return std::fabs(a) == std::fabs(b) ? std::max(a, b) : std::fabs(a) > std::fabs(b) ? a : b;
+}
+
 /// What one thread has seen.
 struct Part {
   Histogram thickness;
   std::size_t active_blocks = 0, active_voxels = 0;
   std::vector<float> index_step;  ///< per region
+  float first_flight = 0, strongest_g = 0;
 };
 
 glm::ivec3 voxel_at(int i) {
@@ -90,9 +97,15 @@ class BlockSurvey {
     for (int i = 0; i < kVoxels; ++i) {
       if (owner_[i] != r) continue;
       ++part_.active_voxels;
-      const glm::vec3 sigma_t =
-          region.heterogeneous ? values_[i].sigma_s + values_[i].sigma_a : region.sigma_s + region.sigma_a;
-      for (int c = 0; c < 3; ++c) part_.thickness.add(h * sigma_t[c]);
+      const Coefficients k = region.heterogeneous
+                                 ? values_[i]
+                                 : Coefficients{region.sigma_s, region.sigma_a, region.emission, region.g};
+      const glm::vec3 sigma_t = k.sigma_s + k.sigma_a, first = delta_scaled(k.sigma_s, k.g) + k.sigma_a;
+      for (int c = 0; c < 3; ++c) {
+        part_.thickness.add(h * sigma_t[c]);
+        part_.first_flight = std::max(part_.first_flight, h * first[c]);
+        if (k.sigma_s[c] > 0) part_.strongest_g = stronger(part_.strongest_g, k.g);
+      }
     }
   }
 
@@ -142,11 +155,15 @@ MediumSurvey survey_medium(const MediumVolume& medium) {
     all.active_blocks += part.active_blocks;
     all.active_voxels += part.active_voxels;
     all.thickness.add(part.thickness);
+    all.first_flight = std::max(all.first_flight, part.first_flight);
+    all.strongest_g = stronger(all.strongest_g, part.strongest_g);
     for (std::size_t r = 0; r < part.index_step.size(); ++r)
       all.index_step[r] = std::max(all.index_step[r], part.index_step[r]);
   });
   survey.active_blocks = all.active_blocks;
   survey.active_voxels = all.active_voxels;
+  survey.first_flight_max = all.first_flight;
+  survey.strongest_g = all.strongest_g;
   if (!all.thickness.empty()) {
     survey.thickness_min = all.thickness.lowest;
     survey.thickness_median = all.thickness.median();

@@ -15,7 +15,8 @@
 namespace turbid {
 namespace {
 
-constexpr int kSamplesPerLaunch = 1 << 14;  // Ctrl-C is answered between launches
+constexpr int kSamplesPerLaunch = 1 << 16;  // Ctrl-C is answered between launches
+constexpr int kInterleave = 8, kSamplesPerClaim = 64;  // of a CPU's work-item
 constexpr float kFarAway = 1e10f;
 
 void copy(glm::vec3 from, float (&to)[3]) {
@@ -235,9 +236,14 @@ ViewImage render_view(cl::Session& session, const ViewInput& in, Progress& progr
   const VoxelSpace space{in.medium.frame()};
   const EntrySurfaces surfaces = entry_surfaces(in.description, in.medium, true);
   const DeviceMedium& medium = *in.solution.device;
-  const cl::Program program = session.build("view.cl", medium.defines());
+  const bool cpu = session.device().cpu;
+  std::vector<cl::Define> defines = medium.defines();
+  defines.push_back({"TURBID_INTERLEAVE", cpu ? kInterleave : 1});
+  defines.push_back({"TURBID_SAMPLES_PER_CLAIM", cpu ? kSamplesPerClaim : 1});
+  const cl::Program program = session.build("view.cl", defines);
   cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>,
-             cl::Buffer<float>, ViewParams, cl::Buffer<ViewSample>, cl::Buffer<float>, cl::Buffer<LightParams>,
+             cl::Buffer<float>, ViewParams, cl::Buffer<ViewSample>, cl::Buffer<int>, cl::Buffer<float>,
+             cl::Buffer<LightParams>,
              cl::Buffer<float>, cl::Buffer<float>, cl::Buffer<float>, cl::Buffer<float>>
       kernel(program, "view");
 
@@ -270,15 +276,19 @@ ViewImage render_view(cl::Session& session, const ViewInput& in, Progress& progr
   const int rows = std::clamp(kSamplesPerLaunch / per_row, 1, image.height);
   cl::Buffer<ViewSample> samples = session.allocate<ViewSample>(static_cast<std::size_t>(rows) * per_row);
   cl::Buffer<float> radiance = session.allocate<float>(8 * static_cast<std::size_t>(rows) * per_row);
+  cl::Buffer<int> claims = session.allocate<int>(1);
   cl::Queue& queue = session.march_queue();
   for (int row = 0; row < image.height; row += rows) {
     const int end = std::min(row + rows, image.height);
     const Strip strip = maker.strip(row, end);
     session.write(queue, samples, std::span<const ViewSample>(strip.samples));
     params.sample_count = static_cast<int>(strip.samples.size());
-    kernel.enqueue(queue, {strip.samples.size()}, {16}, medium.regions_buffer, medium.tile_map_buffer,
+    session.fill_zero(queue, claims);
+    // A CPU's work-items take samples until none is left, one work-item per core; a GPU's take one each.
+    const std::size_t items = cpu ? session.device().compute_units : strip.samples.size();
+    kernel.enqueue(queue, {items}, {cpu ? std::size_t{1} : std::size_t{64}}, medium.regions_buffer, medium.tile_map_buffer,
                    medium.block_region_buffer, medium.distance_tiles, medium.index_tiles, medium.coefficient_tiles,
-                   params, samples, tiles, light_buffer, depth_buffer, transmittance_buffer, ground_buffer, radiance);
+                   params, samples, claims, tiles, light_buffer, depth_buffer, transmittance_buffer, ground_buffer, radiance);
     std::vector<float> values(8 * strip.samples.size());
     session.read(queue, radiance, std::span<float>(values));
     resolve(strip, values, row, end, maker.grid(), &image);

@@ -1,62 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Neighbours are found by voxel coordinates and the collision follows numerics section 1 line by line, so that nothing
-// is shared with what is tested but the lists of boundary and jump faces.
-#include "tests/support/test_diffusion.h"
+// is shared with the device's solvers but the lists of boundary and jump faces.
+#include "host/study/dense_diffusion.h"
 
 #include <cmath>
-#include <random>
 
-#include "host/transport/steady.h"
-
-namespace turbid::test {
-
-DiffusionMedium random_medium(const MediumDescription& scene, double s_low, double s_high, unsigned seed,
-                              int channels) {
-  DiffusionMedium medium = make_diffusion_medium(voxelise(scene), channels);
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> unit(0, 1);
-  for (int c = 0; c < channels; ++c) {
-    for (std::size_t i = 0; i < medium.stride(); ++i) {
-      if (medium.region[i] < 0) continue;
-      const double s = s_low * std::pow(s_high / s_low, unit(random));
-      medium.s[c * medium.stride() + i] = static_cast<float>(s);
-      medium.s_a[c * medium.stride() + i] = static_cast<float>(0.2 * s * unit(random));
-    }
-  }
-  for (BoundaryFace& face : medium.boundary) {
-    for (int c = 0; c < channels; ++c) face.c[c] = static_cast<float>(0.05 + 2.95 * unit(random));
-  }
-  return medium;
-}
-
-DiffusionMedium uniform(glm::ivec3 voxels, const std::array<FaceBoundary, 6>& faces, double s, double s_a) {
-  MediumDescription scene = empty_domain(voxels, 1.0f);
-  scene.faces = faces;
-  set_ambient(scene, make_material({.sigma_s = glm::vec3(static_cast<float>(s - s_a)),
-                                    .sigma_a = glm::vec3(static_cast<float>(s_a))}));
-  DiffusionMedium medium = make_diffusion_medium(voxelise(scene), 1);
-  medium.s.assign(medium.s.size(), static_cast<float>(s));
-  medium.s_a.assign(medium.s_a.size(), static_cast<float>(s_a));
-  return medium;
-}
-
-glm::ivec3 voxel_of(const DiffusionMedium& medium, std::size_t i) {
-  const int v = static_cast<int>(i % 512);
-  return 8 * medium.blocks.coordinates(static_cast<int>(i / 512)) + glm::ivec3(v & 7, (v >> 3) & 7, v >> 6);
-}
-
-SteadyAnswer solve_steady(const DiffusionMedium& medium, const std::vector<float>& q, float tolerance) {
-  SteadySettings settings;
-  settings.tolerance = tolerance;
-  const SteadyResult result = SteadySolve(session(), medium, settings).solve(q);
-  SteadyAnswer answer;
-  answer.light.fluence = result.u;
-  for (std::size_t i = 0; i < result.u.size(); ++i) answer.light.fluence[i] *= medium.eta_squared[i % medium.stride()];
-  account(medium, answer.light);
-  answer.fluence = answer.light.fluence;
-  answer.iterations = result.iterations;
-  return answer;
-}
+namespace turbid::study {
 
 DenseDiffusion::DenseDiffusion(const DiffusionMedium& medium, int channel) : size_(medium.stride()) {
   const glm::ivec3 n = medium.frame.voxels;
@@ -185,4 +134,4 @@ DenseDiffusion::StepResult DenseDiffusion::step(Populations& f, CollisionVariant
   return result;
 }
 
-}  // namespace turbid::test
+}  // namespace turbid::study

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Test kernel: follows one path through a medium with lib/trace.h and lib/interface.h.
+// Follows single paths of light through a medium, for comparison with exact optics: the tracing of march.cl without power.
 // rays[10 i]: position, velocity, region, arc length, surfaces met, face that stopped the ray (-1: none).
 #include "lib/trace.h"
 
-kernel void probe_path(MEDIUM_ARGUMENTS, global float* rays, float step_size, int steps, int count) {
+kernel void follow_path(MEDIUM_ARGUMENTS, global float* rays, float step_size, int steps, int count) {
   const int index = get_global_id(0);
   if (index >= count) return;
   const Medium medium = MEDIUM_FROM_ARGUMENTS;

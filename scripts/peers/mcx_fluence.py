@@ -4,7 +4,8 @@
 MCX's fluence is per unit of energy sent out [1/mm^2], which for a steady lamp of 1 W is W/mm^2: what Turbid writes. Both
 mirror by Fresnel at sharp surfaces (isreflect), and MCX's voxels coincide with Turbid's. Voxels nearer than 3 to a point
 source are left out: there the fluence is singular and its mean over a voxel a matter of the sampling. A head volume has
-labels 0..6 as in MCX's colin27 example, one byte each, x fastest; scattering is taken as reduced (g = 0).
+labels 0..6 as in MCX's colin27 example, one byte each, x fastest; scattering is taken as reduced (g = 0). There the media differ a little: MCX's coefficients are
+constant in a voxel, Turbid's are interpolated between voxel centres.
 
 Examples:
   scripts/peers/run mcx_fluence.py
@@ -114,11 +115,16 @@ HEAD = [(0, 0), (0.019, 0.858), (0.02, 0.99), (0.004, 0.00099), (0.02, 0.99), (0
 
 def head(path, size, coarsen):
     """A labelled head, a point source three voxels below the top of it."""
-    labels = np.fromfile(path, np.uint8)
+    try:
+        labels = np.fromfile(path, np.uint8)
+    except OSError as error:
+        give_up(f"{path}: cannot be read: {error.strerror}")
     if labels.size != np.prod(size) or labels.max() >= len(HEAD):
         give_up(f"{path}: expected {np.prod(size)} labels from 0 to {len(HEAD) - 1}, found {labels.size} bytes"
                 f" up to {labels.max() if labels.size else 0}")
     labels = labels.reshape(size, order="F")[::coarsen, ::coarsen, ::coarsen]
+    # Turbid widens a domain to whole blocks of 8 voxels, evenly at both ends: only such a one keeps its voxels in place.
+    labels = np.pad(labels, [(0, -n % 8) for n in labels.shape])
     nx, ny, nz = labels.shape
     column = np.flatnonzero(labels[nx // 2, ny // 2])
     if column.size == 0:

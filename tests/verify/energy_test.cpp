@@ -64,7 +64,7 @@ TEST(Solvers, SteadyAndLatticeAgreeToTheirTolerance) {
 }
 
 TEST(Solvers, AWarmStartAnswersLikeAColdOneAndKeepsTheBalance) {
-  const EnergyCase c = energy_cases()[1];
+  const EnergyMedium c = energy_media()[1];
   const MediumVolume medium = voxelise(c.scene);
   Progress progress(Verbosity::quiet);
   LightList moved = c.lights;
@@ -120,9 +120,10 @@ std::uint64_t fingerprint() {
   };
   for (const EnergyMedium& c : energy_media()) {
     if (c.name != std::string("nested") && c.name != std::string("heterogeneous")) continue;
-    for (const char* solver : {"steady", "lattice"}) {
+    for (const char* solver : {"steady", "lattice", "global lattice"}) {
       SolverSettings settings;
-      settings.solver = solver;
+      settings.solver = solver == std::string("steady") ? "steady" : "lattice";
+      if (solver == std::string("global lattice")) settings.lattice.block_edge = 0;
       settings.lattice.tolerance = 1e-3f;
       const test::Run run = test::run(c.scene, c.lights, settings);
       add(run.solution.volume.fluence.data(), 4 * run.solution.volume.fluence.size());

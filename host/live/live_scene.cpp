@@ -6,7 +6,8 @@
 
 namespace turbid {
 
-Redo LiveScene::update(const Scene& scene) {
+Redo LiveScene::update(const Scene& scene, bool afresh) {
+  if (afresh && warm_) pending_ = std::max(pending_, Redo::light);
   const Redo redo = std::max(pending_, on_grid_ ? redo_for(on_grid_->scene, scene) : Redo::all);
   if (redo >= Redo::medium) {
     voxelise_changes(scene, redo);
@@ -16,7 +17,7 @@ Redo LiveScene::update(const Scene& scene) {
     on_grid_->scene = std::move(next);
     pending_ = redo;
   }
-  if (pending_ >= Redo::light) solve();
+  if (pending_ >= Redo::light) solve(afresh);
   if (pending_ >= Redo::gather) {
     progress_.stage("gather");
     view_.emplace(session_, ViewInput{.description = on_grid_->scene.medium,
@@ -46,7 +47,7 @@ void LiveScene::voxelise_changes(const Scene& scene, Redo redo) {
   pending_ = Redo::prepare;
 }
 
-void LiveScene::solve() {
+void LiveScene::solve(bool afresh) {
   on_grid_->features = scene_features(on_grid_->medium, on_grid_->scene.lights);
   if (!(on_grid_->features == prepared_for_)) pending_ = std::max(pending_, Redo::prepare);  // other colours of lights
   if (pending_ >= Redo::prepare) {
@@ -60,10 +61,14 @@ void LiveScene::solve() {
                            .surroundings = on_grid_->scene.surroundings});
     solver_->prepare(on_grid_->medium);
     prepared_for_ = on_grid_->features;
+    answered_ = false;
     pending_ = Redo::light;
   }
   view_.reset();
+  warm_ = answered_ && !afresh;
+  solver_->set_warm_start(warm_);
   solution_ = solver_->light(on_grid_->scene.lights);
+  answered_ = true;
   progress_.finish();
   pending_ = Redo::gather;
 }

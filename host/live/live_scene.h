@@ -19,7 +19,11 @@ class LiveScene {
 
   /// Brings everything up to a picture to `scene`, and says which stages that took. What is thrown (bad coefficients, a
   /// stage stopped by Progress) leaves what was finished; the next call goes on from there.
-  Redo update(const Scene& scene);
+  /// A solve starts from the last answer where only the lights changed; if `afresh`, the answer is one that was solved from
+  /// nothing, as in a first run, so that pictures equal those of `turbid render` in every bit.
+  Redo update(const Scene& scene, bool afresh = false);
+  /// Whether the solution began from an earlier one.
+  bool warm() const { return warm_; }
   /// The scene of the last update() seen by a camera, as a stage of that name; may be stopped by Progress.
   ViewImage look(const Camera&, const std::string& stage);
 
@@ -28,7 +32,7 @@ class LiveScene {
 
  private:
   void voxelise_changes(const Scene& scene, Redo redo);
-  void solve();
+  void solve(bool afresh);
 
   cl::Session& session_;
   Progress& progress_;
@@ -37,6 +41,8 @@ class LiveScene {
   SceneFeatures prepared_for_;
   std::unique_ptr<TransportSolver> solver_;
   std::optional<LightSolution> solution_;
+  bool answered_ = false;                 ///< solver_ has an answer to start from
+  bool warm_ = false;
   std::optional<ViewPass> view_;  ///< refers to on_grid_ and solution_
 };
 

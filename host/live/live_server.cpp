@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See live_server.h. Routes: / page.css page.js; /state?after=N (waits for news); /picture.png; /scene.toml;
+// See live_server.h. Routes: / page.css page.js sliders.js; /state?after=N (waits for news); /picture.png; /scene.toml;
 // POST /change (lines as for -D), /save/scene, /save/picture.
 #include "host/live/live_server.h"
 
@@ -126,9 +126,10 @@ void LiveServer::add_pages() {
     server.Get(
         path, [text, type](const httplib::Request&, httplib::Response& response) { response.set_content(text, type); });
   };
-  page("/", kPage_html, "text/html; charset=utf-8");
-  page("/page.css", kPage_css, "text/css; charset=utf-8");
-  page("/page.js", kPage_js, "text/javascript; charset=utf-8");
+  page("/", k_page_html, "text/html; charset=utf-8");
+  page("/page.css", k_page_css, "text/css; charset=utf-8");
+  page("/page.js", k_page_js, "text/javascript; charset=utf-8");
+  page("/sliders.js", k_sliders_js, "text/javascript; charset=utf-8");
   server.Get("/state", answered([this](const httplib::Request& request, httplib::Response& response) {
                std::uint64_t after = 0;
                if (request.has_param("after")) {

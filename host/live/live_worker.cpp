@@ -202,12 +202,12 @@ void LiveWorker::note_progress(const std::string& stage, double fraction) {
   bump();
 }
 
-Redo LiveWorker::bring_up(LiveScene& live, const std::shared_ptr<const Scene>& scene) {
+Redo LiveWorker::bring_up(LiveScene& live, const std::shared_ptr<const Scene>& scene, bool afresh) {
   progress_.take_times();
   may_be_superseded_ = false;
   refined_ = false;
   shown_ = scene;
-  const Redo redo = live.update(*scene);
+  const Redo redo = live.update(*scene, afresh);
   const std::lock_guard lock(guard_);
   if (redo >= Redo::light || !solver_) solver_ = std::make_shared<const SolverReport>(live.solution().report);
   good_ = scene;
@@ -217,7 +217,7 @@ Redo LiveWorker::bring_up(LiveScene& live, const std::shared_ptr<const Scene>& s
 
 void LiveWorker::show(LiveScene& live, const std::shared_ptr<const Scene>& scene) {
   const bool was_refined = refined_;
-  const Redo redo = bring_up(live, scene);
+  const Redo redo = bring_up(live, scene, false);
   if (redo <= Redo::tone && was_refined)
     publish(*scene, true);
   else
@@ -272,8 +272,8 @@ void LiveWorker::publish(const Scene& scene, bool refined) {
 
 void LiveWorker::serve(LiveScene& live, SaveJob& job) {
   try {
-    if (shown_ != job.scene || !refined_) {
-      bring_up(live, job.scene);
+    if (shown_ != job.scene || !refined_ || live.warm()) {
+      bring_up(live, job.scene, true);
       image_ = look_timed(live, job.scene->camera, "view");
       image_samples_ = job.scene->camera.samples;
       publish(*job.scene, true);

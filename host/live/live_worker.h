@@ -38,8 +38,8 @@ class LiveWorker {
   std::string scene_text() const;
   /// Writes the effective scene as it is wanted now; returns the files. Throws InputError if that can't be.
   std::vector<std::string> save_scene();
-  /// Waits for the refined picture of the scene as it is wanted now and writes EXR and PNG: radiances equal to those of
-  /// `turbid render` on the saved scene in every bit.
+  /// Waits for the refined picture of the scene as it is wanted now, solved from nothing, and writes EXR and PNG:
+  /// radiances equal to those of `turbid render` on the saved scene in every bit.
   std::vector<std::string> save_picture();
   /// Asks the thread to end, and all who wait in state() or save_picture() to give up.
   void stop();
@@ -53,7 +53,7 @@ class LiveWorker {
   };
 
   void run();
-  Redo bring_up(LiveScene&, const std::shared_ptr<const Scene>&);
+  Redo bring_up(LiveScene&, const std::shared_ptr<const Scene>&, bool afresh);
   void show(LiveScene&, const std::shared_ptr<const Scene>&);
   void serve(LiveScene&, SaveJob&);
   void take_back(const std::shared_ptr<const Scene>& bad, const std::string& why);

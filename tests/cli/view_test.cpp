@@ -7,6 +7,7 @@
 #include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <thread>
 
 #include "tests/support/http.h"
@@ -19,8 +20,10 @@ namespace {
 using Words = std::vector<std::string>;
 using Json = nlohmann::json;
 
-Json state(const std::string& url, long after = 0) {
-  return Json::parse(ask(url, {.path = "/state?after=" + std::to_string(after)}).body);
+Json state(const std::string& url) {
+  const HttpAnswer answer = ask(url, {.path = "/state"});
+  if (answer.status == 200) return Json::parse(answer.body);
+  throw std::runtime_error("no state: the server answered " + std::to_string(answer.status) + " " + answer.body);
 }
 
 /// The state once nothing is left to do.

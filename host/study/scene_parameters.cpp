@@ -59,7 +59,7 @@ void check_levels(const SceneParameter& parameter, const std::vector<double>& le
   if (levels.size() < 2) fail("two or more, from coarse to fine, with commas between");
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const double level = levels[i];
-    const bool whole = parameter.level_unit == "voxels along the longest side" || parameter.name == "inner" ||
+    const bool whole = parameter.name == "voxel_size" || parameter.name == "inner" ||
                        parameter.name == "photons" || parameter.name == "block" || parameter.name == "solver";
     if (!std::isfinite(level) || (whole && level != std::floor(level)))
       fail("whole numbers of " + parameter.level_unit);

@@ -26,8 +26,9 @@ Scene scene_of(const Sample& sample) {
   scene.name = sample.name;
   scene.medium = test::empty_domain({32, 32, 32}, 2.3f / 32, FaceBoundary::open);
   scene.medium.frame.origin = glm::vec3(-1.15f);
-  test::add_body(scene.medium, sample.sphere ? make_sphere(1.0f) : make_box({1.6f, 1.6f, 1.6f}),
-                 test::make_material({.sigma_s = glm::vec3(sigma_s), .sigma_a = glm::vec3(sigma_a), .eta = sample.eta, .g = sample.g}));
+  test::add_body(scene.medium, sample.sphere ? make_sphere(1.0f, {}) : make_box({1.6f, 1.6f, 1.6f}, {}),
+                 test::make_material(
+                     {.sigma_s = glm::vec3(sigma_s), .sigma_a = glm::vec3(sigma_a), .eta = sample.eta, .g = sample.g}));
   Light light;
   light.name = "light";
   light.kind = sample.beam ? LightKind::spot : LightKind::directional;
@@ -39,10 +40,11 @@ Scene scene_of(const Sample& sample) {
 }
 
 TEST(ErrorEstimate, covers_the_true_error_and_is_not_far_above_it) {
-  const std::vector<Sample> samples{{"deep milk", 10, 0.99f, 1.35f, 0},     {"matched", 10, 0.9f, 1, 0},
-                                    {"forward", 5, 0.99f, 1.3f, 0.8f},      {"white, thin", 1, 1, 1, 0, false},
-                                    {"thin glass", 0.4f, 0.9f, 1.5f, 0},    {"dark", 3, 0.5f, 1.2f, 0, false, false},
-                                    {"cube of resin", 3, 0.99f, 1.5f, 0, false}, {"thin haze", 0.3f, 0.99f, 1, 0.5f, true, false}};
+  const std::vector<Sample> samples{
+      {"deep milk", 10, 0.99f, 1.35f, 0},          {"matched", 10, 0.9f, 1, 0},
+      {"forward", 5, 0.99f, 1.3f, 0.8f},           {"white, thin", 1, 1, 1, 0, false},
+      {"thin glass", 0.4f, 0.9f, 1.5f, 0},         {"dark", 3, 0.5f, 1.2f, 0, false, false},
+      {"cube of resin", 3, 0.99f, 1.5f, 0, false}, {"thin haze", 0.3f, 0.99f, 1, 0.5f, true, false}};
   std::vector<double> ratios;
   int covered = 0;
   for (const Sample& sample : samples) {
@@ -52,8 +54,7 @@ TEST(ErrorEstimate, covers_the_true_error_and_is_not_far_above_it) {
     const auto estimate = estimate_error(test::session(), run.on_grid, run.solution, false, quiet);
     ASSERT_TRUE(estimate);
     const PhotonReference reference = photon_reference(test::session(), scene, {.photons = 3e5});
-    const ReferenceErrors truth =
-        fluence_errors(sample_fluence(run.solution.volume, run.on_grid.medium), reference);
+    const ReferenceErrors truth = fluence_errors(sample_fluence(run.solution.volume, run.on_grid.medium), reference);
     const double ratio = estimate->fluence.total() / truth.rel_l2;
     ratios.push_back(ratio);
     covered += ratio >= 1;

@@ -28,7 +28,7 @@ const std::vector<SceneParameter>& scene_parameters() {
        1.0,
        "the grid of rays falls on the grid of voxels irregularly",
        {1, 4, 16}},
-      {"tolerance", "1", "1", false, 1, 0.5, "conjugate gradients end after whole steps", {1e-1, 1e-2, 1e-3, 1e-4}},
+      {"tolerance", "1", "1", false, 0, 0, "conjugate gradients end after whole steps", {1e-1, 1e-2, 1e-3, 1e-4}},
       {"photons", "photons", "1/sqrt(photons)", true, 1, 0.7, "two levels' scatter", {1e5, 4e5, 1.6e6}},
       {"block", "voxels", "voxels", true, 0, 0, "the steady state does not depend on it", {4, 8}},
       {"inner", "steps", "steps", true, 0, 0, "the steady state does not depend on it", {2, 4, 8, 16}},

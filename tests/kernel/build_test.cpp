@@ -25,11 +25,13 @@ TEST(KernelFiles, RayProgramsBuildForEveryKindOfScene) {
   }
 }
 
-TEST(KernelFiles, LatticesOfEitherEdgeBuildForEveryCollision) {
+TEST(KernelFiles, LatticesOfEitherEdgeAndTheGlobalOneBuildForEveryCollision) {
   for (long edge : {4, 8}) {
     for (long collision = 0; collision < 4; ++collision)
       EXPECT_NO_THROW(test::session().build("lattice.cl", {{"TURBID_EDGE", edge}, {"TURBID_COLLISION", collision}}));
   }
+  for (long collision = 0; collision < 4; ++collision)
+    EXPECT_NO_THROW(test::session().build("global_lattice.cl", {{"TURBID_COLLISION", collision}}));
 }
 
 TEST(KernelFiles, TheSteadySolveBuilds) {

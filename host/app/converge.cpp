@@ -9,6 +9,7 @@
 #include "host/app/output.h"
 #include "host/base/errors.h"
 #include "host/report/converge_report.h"
+#include "host/report/pareto_report.h"
 #include "host/report/report_context.h"
 #include "host/study/case.h"
 #include "host/study/refine_case.h"
@@ -21,7 +22,10 @@ struct ConvergeOptions : SceneOptions {
   std::vector<double> levels;
   int repeat = 1;
   double photons = 4e6;
-  bool picture = false;
+  bool picture = false, pareto = false;
+  std::vector<std::string> subjects;
+  std::string against;
+  std::vector<double> aims;
 };
 
 bool is_scene(const std::string& subject) {
@@ -57,29 +61,75 @@ std::vector<SceneRefinement> refine(cl::Session& session, Progress& progress, co
   return {refine_scene(session, read, parameter, settings, tell)};
 }
 
-void converge(const ConvergeOptions& options) {
-  if (options.over.empty()) throw InputError("--over is missing: which parameter shall be refined?");
+Scene read(const ConvergeOptions& options, const std::string& path) {
+  if (!is_scene(path)) throw InputError(path + ": expected a scene, a file that ends in .toml");
+  return read_scene(path, options.overrides);
+}
+
+/// Writes and prints it.
+void publish(const Document& document, const ConvergeOptions& options, const std::string& name) {
+  const std::filesystem::path prefix =
+      options.output.empty() ? std::filesystem::path("out") / name : std::filesystem::path(options.output);
+  const FolderInUse folder(prefix.has_parent_path() ? prefix.parent_path() : ".");
+  const NamedTexts files = write_document(document, prefix.string());
+  if (options.json) return print(document_json(document));
+  if (!options.quiet) print(document_text(document));
+  for (const auto& [kind, file] : files) print(kind + "  " + file + "\n");
+}
+
+void weigh(const ConvergeOptions& options) {
+  for (const double aim : options.aims)
+    if (!(aim > 0 && aim < 1)) throw InputError("--error: expected errors in (0, 1)");
+  const Scene scene = read(options, options.scene);
+  const cl::DeviceChoice choice = cl::choose_device(options.device);
+  Progress progress(options.verbosity());
+  cl::Session session(choice);
+  const ParetoStudy study = pareto_study(session, scene,
+                                         {.reference = {.photons = options.photons, .cache = options.cache},
+                                          .picture = options.picture && scene.has_camera},
+                                         [&](const std::string& run) { progress.stage(run); });
+  progress.finish();
+  const std::vector<double> aims = options.aims.empty() ? std::vector<double>{0.05, 0.02, 0.01} : options.aims;
+  publish(pareto_document(scene.name, study, aims, report_context(command_line(), &choice.device)), options,
+          scene.name + "/converge_pareto");
+}
+
+void compare_with_photons(const ConvergeOptions& options) {
+  if (options.against != "photon") throw InputError("--against " + options.against + ": expected photon");
+  std::vector<Scene> scenes;
+  for (const std::string& subject : options.subjects) scenes.push_back(read(options, subject));
+  const cl::DeviceChoice choice = cl::choose_device(options.device);
+  Progress progress(options.verbosity());
+  cl::Session session(choice);
+  std::vector<AccuracyRow> rows;
+  for (const Scene& scene : scenes)
+    for (AccuracyRow& row : accuracy_rows(session, scene, {.photons = options.photons, .cache = options.cache},
+                                          [&](const std::string& run) { progress.stage(run); }))
+      rows.push_back(std::move(row));
+  progress.finish();
+  publish(accuracy_document(rows, report_context(command_line(), &choice.device)), options, "accuracy");
+}
+
+void converge(ConvergeOptions options) {
+  options.scene = options.subjects.front();
+  if (!(options.photons >= 2 && options.photons <= 1e12)) throw InputError("--photons: expected 2 to 1e12");
+  if (!options.against.empty()) return compare_with_photons(options);
+  if (options.subjects.size() > 1)
+    throw InputError(options.subjects[1] + ": expected one case or scene (--against photon takes more)");
+  if (options.pareto) return weigh(options);
+  if (options.over.empty())
+    throw InputError("expected --over PARAMETER, --pareto or --against photon: see turbid converge --help");
   if (options.reference != "auto" && options.reference != "photon")
     throw InputError("--reference " + options.reference + ": expected auto or photon");
   if (options.repeat < 1) throw InputError("--repeat: expected 1 or more");
   const cl::DeviceChoice choice = cl::choose_device(options.device);
   const std::string name = std::filesystem::path(options.scene).stem().string();
-  const std::filesystem::path prefix = options.output.empty()
-                                           ? std::filesystem::path("out") / name / ("converge_" + options.over)
-                                           : std::filesystem::path(options.output);
   Progress progress(options.verbosity());
   cl::Session session(choice);
   const std::vector<SceneRefinement> refinements = refine(session, progress, options);
   progress.finish();
-  const Document document = converge_document(name, refinements, report_context(command_line(), &choice.device));
-  const FolderInUse folder(prefix.has_parent_path() ? prefix.parent_path() : ".");
-  const NamedTexts files = write_document(document, prefix.string());
-  if (options.json) {
-    print(document_json(document));
-  } else {
-    if (!options.quiet) print(document_text(document));
-    for (const auto& [kind, file] : files) print(kind + "  " + file + "\n");
-  }
+  publish(converge_document(name, refinements, report_context(command_line(), &choice.device)), options,
+          name + "/converge_" + options.over);
   for (const SceneRefinement& refinement : refinements)
     if (!refinement.passed())
       throw VerificationError(name + ": the order in " + refinement.parameter.name + " is less than expected");
@@ -90,7 +140,17 @@ void converge(const ConvergeOptions& options) {
 void add_converge(CLI::App& program, Work& work) {
   const auto options = std::make_shared<ConvergeOptions>();
   CLI::App& command = *program.add_subcommand("converge", "Measure how the error of a case or scene falls by refining");
-  command.add_option("SUBJECT", options->scene, "A scene (.toml), or a case of `turbid verify --list`")->required();
+  command.add_option("SUBJECT", options->subjects, "A scene (.toml), or a case of `turbid verify --list`")->required();
+  command.add_flag("--pareto", options->pareto, "Run a scene by many settings: error against time, and what to use");
+  command
+      .add_option("--error", options->aims, "With --pareto: errors to recommend settings for (default: 0.05,0.02,0.01)")
+      ->delimiter(',')
+      ->type_name("E,E,...");
+  command
+      .add_option("--against", options->against, "photon: a table of how far steady and lattice lie from it in scenes")
+      ->type_name("photon");
+  command.add_option("--resolution", options->overrides.resolution, "Voxels along the domain's longest side")
+      ->type_name("N");
   command
       .add_option("--over", options->over,
                   "voxel_size, step, rays, tolerance, photons, block, inner or solver; of a case what it offers")
@@ -117,7 +177,7 @@ void add_converge(CLI::App& program, Work& work) {
       ->allow_extra_args(false);
   command
       .add_option("-o,--output", options->output,
-                  "PREFIX of the report's .html, .json and .csv files (default: out/NAME/converge_PARAMETER)")
+                  "PREFIX of the report's .html, .json and .csv files (default: out/NAME/converge_...)")
       ->type_name("PREFIX");
   add_talk_options(command, *options);
   add_device_option(command, options->device);
@@ -125,6 +185,8 @@ void add_converge(CLI::App& program, Work& work) {
       "Examples:\n"
       "  turbid converge sphere_matched --over voxel_size\n"
       "  turbid converge scenes/sphere.toml --over voxel_size --levels 24,48,96 --picture\n"
+      "  turbid converge scenes/sphere.toml --pareto --resolution 64\n"
+      "  turbid converge scenes/sphere.toml scenes/fog.toml --against photon --resolution 48\n"
       "Status 1 if the observed order is less than expected.");
   command.callback([options, &work] { work = [options] { converge(*options); }; });
 }

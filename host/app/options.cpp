@@ -3,6 +3,7 @@
 #include "host/app/options.h"
 
 #include <cstdio>
+#include <cstdlib>
 
 namespace turbid::app {
 namespace {
@@ -40,7 +41,9 @@ void add_device_option(CLI::App& command, std::string& device) {
 
 void add_solver_options(CLI::App& command, SceneOptions& options) {
   add_device_option(command, options.device);
-  command.add_option("--solver", options.overrides.solver, "How to solve for the scattered light: steady, lattice or photon (Monte Carlo)")
+  command
+      .add_option("--solver", options.overrides.solver,
+                  "How to solve for the scattered light: steady, lattice or photon (Monte Carlo)")
       ->type_name("NAME");
   command.add_option("--seed", options.overrides.seed, "Shifts the grid of light rays; the same seed, the same bits")
       ->type_name("N");
@@ -48,12 +51,21 @@ void add_solver_options(CLI::App& command, SceneOptions& options) {
   const auto photon_key = [&](const char* flag, const char* key, const char* help, const char* type) {
     command
         .add_option_function<std::string>(
-            flag, [&options, key](const std::string& value) { options.overrides.settings.push_back(key + value); }, help)
+            flag,
+            [&options, key](const std::string& value) {
+              {
+                options.overrides.settings.push_back(key + value);
+                if (std::string(key) == "solver.photon.error=") options.error = std::strtod(value.c_str(), nullptr);
+              }
+            },
+            help)
         ->type_name(type);
   };
   photon_key("--photons", "solver.photon.photons=", "Photon solver: photons to follow, over all colours", "N");
   photon_key("--error", "solver.photon.error=",
-             "Photon solver: stop when the fluence's mean relative standard error is below this", "E");
+             "Photon solver: stop when the fluence's mean relative standard error is below this. Render with another "
+             "solver: choose settings (or photons) so that the picture's error is below it",
+             "E");
   command
       .add_option("--checkpoint", options.checkpoint,
                   "Photon solver: file that is written every few seconds, and gone on from if it is there")

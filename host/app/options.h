@@ -2,6 +2,7 @@
 // Flags that several commands share.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 
 #include "host/base/progress.h"
@@ -20,7 +21,8 @@ struct SceneOptions : TalkOptions {
   std::string scene;
   SceneOverrides overrides;
   std::string device;
-  std::string checkpoint;  ///< of the photon solver; empty: none
+  std::optional<double> error;  ///< --error, which is also the photon solver's
+  std::string checkpoint;       ///< of the photon solver; empty: none
 };
 
 void add_json_option(CLI::App& command, TalkOptions&);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // turbid render: a scene in, pictures and a report out.
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 
 #include "host/app/command.h"
@@ -11,11 +13,15 @@
 #include "host/base/errors.h"
 #include "host/report/checksum.h"
 #include "host/report/run_report.h"
+#include "host/study/choose_settings.h"
 #include "host/study/picture_metadata.h"
 #include "host/study/run_warnings.h"
 
 namespace turbid::app {
 namespace {
+
+constexpr int kProbeVoxels = 48;                    // of the small run that --error chooses by
+constexpr std::int64_t kMostPhotons = 200'000'000;  // that --error may follow: some minutes
 
 struct RenderOptions : SceneOptions {
   std::string output;
@@ -28,10 +34,53 @@ std::size_t pixels_not_finite(const ViewImage& image) {
   return count;
 }
 
-void render(const RenderOptions& options) {
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+/// Settings for the asked error, chosen by the estimate of a small run and put into the options. Returns what was
+/// chosen and why; nothing for the photon solver, which takes the error itself.
+std::string choose(RenderOptions& options, const cl::DeviceChoice& choice, Progress& progress) {
+  progress.stage("choose");
+  SceneOverrides overrides = options.overrides;
+  if (!overrides.resolution) overrides.resolution = kProbeVoxels;
+  Scene scene = read_scene(options.scene, overrides);
+  if (!scene.has_camera || scene.solver.solver == "photon") return "";
+  scene.solver.error_estimate = EstimateEffort::quick;
+  Progress quiet(Verbosity::quiet);
+  cl::Session session(choice);
+  const SceneOnGrid on_grid = put_on_grid(std::move(scene), quiet);
+  const LightSolution solution = solve_light(session, on_grid, quiet);
+  const ErrorEstimate estimate = *estimate_error(session, on_grid, solution, true, quiet);
+  const SolverSettings& used = on_grid.scene.solver;
+  const glm::ivec3 voxels = on_grid.scene.medium.frame.voxels;
+  const ChosenSettings chosen = choose_settings(*estimate.image,
+                                                {std::max({voxels.x, voxels.y, voxels.z}), used.march.step_in_voxels,
+                                                 used.march.rays_per_face, used.steady.tolerance},
+                                                *options.error);
+  progress.finish();
+  if (!options.overrides.resolution) options.overrides.resolution = chosen.with.voxels;
+  const std::string grid = std::to_string(*options.overrides.resolution) + " voxels, ";
+  std::vector<std::string>& settings = options.overrides.settings;
+  if (chosen.photon) {
+    options.overrides.solver = "photon";
+    settings.push_back("solver.photon.photons=" + std::to_string(kMostPhotons));
+    return grid + "photons to a standard error of " + number(*options.error) + ": " + chosen.reason;
+  }
+  settings.push_back("solver.march.step_in_voxels=" + number(chosen.with.step));
+  settings.push_back("solver.march.rays_per_face=" + number(chosen.with.rays));
+  settings.push_back("solver.tolerance=" + number(chosen.with.tolerance));
+  return grid + "step " + number(chosen.with.step) + ", " + number(chosen.with.rays) + " rays per face, tolerance " +
+         number(chosen.with.tolerance) + ": " + chosen.reason;
+}
+
+void render(RenderOptions options) {
   const cl::DeviceChoice choice = cl::choose_device(options.device);
   const RenderOutput output = render_output(options.output, options.scene);
   Progress progress(options.verbosity());
+  const std::string chosen = options.error && *options.error > 0 ? choose(options, choice, progress) : "";
   const VoxelisedScene in = read_and_voxelise(options, progress);
   if (!in.scene.has_camera)
     throw InputError(options.scene + ": has no [camera], so there is nothing to render; turbid solve needs none");
@@ -43,6 +92,9 @@ void render(const RenderOptions& options) {
   for (const std::string& sentence : run_warnings(solution.report, in.scene.solver)) progress.warn(sentence);
   const ViewImage image = look_at(session, in, solution, progress);
   const std::optional<ErrorEstimate> error = estimate_error(session, in, solution, true, progress);
+  if (!chosen.empty() && error && error->image->total() > *options.error)
+    progress.warn("the picture's estimated error is " + number(error->image->total()) + ", more than the " +
+                  number(*options.error) + " asked for; its parts are in the report");
 
   progress.stage("write");
   const FolderInUse folder(output.folder);
@@ -56,6 +108,7 @@ void render(const RenderOptions& options) {
   report.outputs = {{"exr", output.exr}, {"png", output.png}, {"report", output.report}};
   report.checksums.emplace_back("picture", checksum(image.colour, image.direct, image.scattered));
   report.exposure = exposure;
+  report.chosen = chosen;
   const std::string json = report_json(report);
   write_file_atomically(output.report, json.data(), json.size());
   print(options.json ? json : report_text(report, options.quiet));
@@ -79,7 +132,8 @@ void add_render(CLI::App& program, Work& work) {
       ->type_name("DIR|FILE.exr");
   command.footer(
       "Example:\n"
-      "  turbid render scenes/bunny.toml -o pictures -D camera.width=1024 -D camera.height=1024 --resolution 192");
+      "  turbid render scenes/bunny.toml -o pictures -D camera.width=1024 -D camera.height=1024 --resolution 192\n"
+      "  turbid render scenes/bunny.toml --error 0.1");
   command.callback([options, &work] { work = [options] { render(*options); }; });
 }
 

@@ -117,6 +117,7 @@ std::string report_json(const RunReport& r) {
                        {"samples", camera.samples},
                        {"exposure_stops", *r.exposure}};
   }
+  if (!r.chosen.empty()) json["chosen"] = r.chosen;
   if (r.error) json["error_estimate"] = error_part(*r.error);
   if (s.photon) json["photon"] = photon_part(*s.photon);
   json["seconds"] = seconds_part(r.times);

@@ -30,6 +30,7 @@ struct RunReport {
   NamedTexts outputs;             ///< files written
   NamedTexts checksums;           ///< of the results' bits
   std::optional<float> exposure;  ///< of the preview [stops]; render only
+  std::string chosen = {};        ///< settings that --error chose, and why; empty: none were
 };
 
 std::string report_json(const RunReport&);

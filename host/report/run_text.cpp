@@ -72,6 +72,7 @@ std::string report_text(const RunReport& r, bool brief) {
     text += line("solver     %s: %s rays in %d batches, %d iterations, solved to %.2g\n", s.solver.c_str(),
                  with_commas(s.rays).c_str(), s.march_batches, s.iterations, s.error_estimate);
   }
+  if (!r.chosen.empty()) text += "chosen     " + r.chosen + "\n";
   if (r.error) text += error_table(*r.error);
   text += "times     ";
   double total = 0;

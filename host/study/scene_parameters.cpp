@@ -28,7 +28,7 @@ const std::vector<SceneParameter>& scene_parameters() {
        1.0,
        "the grid of rays falls on the grid of voxels irregularly",
        {1, 4, 16}},
-      {"tolerance", "1", "1", false, 1, 0.5, "conjugate gradients end after whole steps", {1e-1, 1e-2, 1e-3, 1e-4}},
+      {"tolerance", "1", "1", false, 0, 0, "conjugate gradients end after whole steps", {1e-1, 1e-2, 1e-3, 1e-4}},
       {"photons", "photons", "1/sqrt(photons)", true, 1, 0.7, "two levels' scatter", {1e5, 4e5, 1.6e6}},
       {"block", "voxels", "voxels", true, 0, 0, "the steady state does not depend on it", {4, 8}},
       {"inner", "steps", "steps", true, 0, 0, "the steady state does not depend on it", {2, 4, 8, 16}},
@@ -59,7 +59,7 @@ void check_levels(const SceneParameter& parameter, const std::vector<double>& le
   if (levels.size() < 2) fail("two or more, from coarse to fine, with commas between");
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const double level = levels[i];
-    const bool whole = parameter.level_unit == "voxels along the longest side" || parameter.name == "inner" ||
+    const bool whole = parameter.name == "voxel_size" || parameter.name == "inner" ||
                        parameter.name == "photons" || parameter.name == "block" || parameter.name == "solver";
     if (!std::isfinite(level) || (whole && level != std::floor(level)))
       fail("whole numbers of " + parameter.level_unit);

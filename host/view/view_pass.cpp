@@ -18,6 +18,21 @@ namespace {
 
 constexpr int kSamplesPerLaunch = 1 << 14;  // Ctrl-C is answered between launches
 
+int kind_of(const Light& light) {
+  return light.kind == LightKind::directional ? TURBID_LIGHT_DIRECTIONAL
+         : light.kind == LightKind::point     ? TURBID_LIGHT_POINT
+                                              : TURBID_LIGHT_SPOT;
+}
+
+std::vector<cl::Define> view_defines(const ViewInput& in) {
+  long lights = 0;
+  for (const Light& light : in.lights) lights |= TURBID_LIGHT_BIT(kind_of(light));
+  if (in.features.general) lights = TURBID_LIGHT_BIT(3) - 1;
+  std::vector<cl::Define> defines = in.solution.device->defines();
+  defines.push_back({"TURBID_LIGHTS", lights});
+  return defines;
+}
+
 ViewParams make_params(const ViewInput& in, const VoxelSpace& space) {
   const float h = space.frame.voxel_size;
   ViewParams p{};
@@ -54,9 +69,7 @@ std::vector<LightParams> make_lights(const ViewInput& in, const VoxelSpace& spac
     const Light& light = in.lights[i];
     const ShadowMap& shadow = in.solution.shadows[i];
     LightParams p{};
-    p.kind = light.kind == LightKind::directional ? TURBID_LIGHT_DIRECTIONAL
-             : light.kind == LightKind::point     ? TURBID_LIGHT_POINT
-                                                  : TURBID_LIGHT_SPOT;
+    p.kind = kind_of(light);
     copy(space.point(light.position), p.position);
     copy(glm::normalize(light.direction), p.direction);
     const float half_angle = glm::radians(0.5f * light.cone_angle);
@@ -127,7 +140,7 @@ struct ViewPass::Prepared {
         in(input),
         space{in.medium.frame()},
         surfaces(entry_surfaces(in.description, in.medium, true)),
-        program(session.build("view.cl", in.solution.device->defines())),
+        program(session.build("view.cl", view_defines(in))),
         kernel(program, "view"),
         params(make_params(in, space)) {
     std::vector<float> depth_values, ground_values, transmittance_values;

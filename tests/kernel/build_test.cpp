@@ -17,6 +17,7 @@ TEST(KernelFiles, RayProgramsBuildForEveryKindOfScene) {
                                                    {"TURBID_GRADED", choice >> 2 & 1},
                                                    {"TURBID_HETEROGENEOUS", choice >> 3 & 1},
                                                    {"TURBID_SCATTERING", choice >> 4 & 1},
+                                                   {"TURBID_LIGHTS", 1 << choice % 4},
                                                    {"TURBID_VOXELS_X", 16},
                                                    {"TURBID_VOXELS_Y", 24},
                                                    {"TURBID_VOXELS_Z", 8}}))

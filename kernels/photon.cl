@@ -19,6 +19,9 @@
 #if TURBID_CHANNELS != 1
 #error "photon.cl follows one colour at a time: TURBID_CHANNELS must be 1"
 #endif
+#ifndef TURBID_ANISOTROPIC
+#error "TURBID_ANISOTROPIC (1: some g differs from 0) must be defined"
+#endif
 
 // A photon below this weight survives with the probability given and is that much heavier then.
 #define ROULETTE_WEIGHT 0.01f
@@ -82,7 +85,12 @@ static void scatter(Photon* photon, const Medium* medium, float g, uint4 bits) {
 #if TURBID_GRADED
   eta = eta_at(medium, photon->ray.region, locate(photon->ray.x));
 #endif
-  photon->ray.v = eta * turned(photon->ray.v * inverse, sample_henyey_greenstein(g, uniform(bits.x)), uniform(bits.y));
+#if TURBID_ANISOTROPIC
+  const float cosine = sample_henyey_greenstein(g, uniform(bits.x));
+#else
+  const float cosine = 2.0f * uniform(bits.x) - 1.0f;  // the same bits as above with g = 0
+#endif
+  photon->ray.v = eta * turned(photon->ray.v * inverse, cosine, uniform(bits.y));
   photon->ray.grace = 0.0f;
   photon->unscattered = false;
 }

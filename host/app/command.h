@@ -18,6 +18,7 @@ void add_devices(CLI::App& program, Work& work);
 void add_info(CLI::App& program, Work& work);
 void add_compare(CLI::App& program, Work& work);
 void add_profile(CLI::App& program, Work& work);
+void add_bench(CLI::App& program, Work& work);
 void add_verify(CLI::App& program, Work& work);
 void add_converge(CLI::App& program, Work& work);
 

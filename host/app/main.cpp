@@ -67,7 +67,7 @@ void run(int argc, const char* const* argv) {
   program.require_subcommand(1);
   Work work;
   for (const auto add : {add_render, add_solve, add_voxelise, add_view, add_check, add_devices, add_info, add_compare,
-                         add_profile, add_verify, add_converge})
+                         add_profile, add_bench, add_verify, add_converge})
     add(program, work);
   require_command(program, argc, argv);
   if (parse(program, argc, argv)) work();

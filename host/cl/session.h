@@ -25,6 +25,8 @@ class Queue {
   Recorder* recorder() const { return recorder_->on() ? recorder_ : nullptr; }
   /// Blocks until everything enqueued has run. Stands only where the host reads.
   void finish();
+  /// Starts what is enqueued without waiting.
+  void flush() { check(clFlush(handle_.get()), "starting the device"); }
 
  private:
   QueueHandle handle_;

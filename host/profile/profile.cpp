@@ -80,6 +80,19 @@ std::vector<StageProfile> profile_stages(const std::vector<Frame>& frames) {
   return result;
 }
 
+/// One warm frame, recorded.
+Frame frame_of(cl::Session& session, PreparedScene& prepared, Progress& progress, SolverReport* report,
+               std::int64_t* view_steps) {
+  return record(session, progress, [&] {
+    const LightSolution solution = prepared.light();
+    const std::optional<ViewImage> image = prepared.look(solution);
+    if (report) *report = solution.report;
+    if (view_steps && image) *view_steps = image->steps;
+  });
+}
+
+}  // namespace
+
 std::vector<BufferUse> buffers_of(const Frame& frame) {
   std::vector<BufferUse> result;
   std::set<const void*> seen;
@@ -99,20 +112,8 @@ std::vector<BufferUse> buffers_of(const Frame& frame) {
   return result;
 }
 
-/// One warm frame, recorded.
-Frame frame_of(cl::Session& session, PreparedScene& prepared, Progress& progress, SolverReport* report,
-               std::int64_t* view_steps) {
-  return record(session, progress, [&] {
-    const LightSolution solution = prepared.light();
-    const std::optional<ViewImage> image = prepared.look(solution);
-    if (report) *report = solution.report;
-    if (view_steps && image) *view_steps = image->steps;
-  });
-}
-
-}  // namespace
-
 SceneFeatures general_features(SceneFeatures features) {
+  features.general = true;
   features.graded_index = features.interfaces = features.scattering = features.absorption = true;
   features.heterogeneous = features.anisotropic = features.emission = true;
   features.channels = 3;

@@ -64,6 +64,9 @@ struct Profile {
 /// Settings beyond the scene's own; `scene` has been read. Throws what its stages throw.
 Profile profile_scene(cl::Session&, Scene scene, const ProfileSettings&, Progress&);
 
+/// What a frame's kernels were given, largest first; empty buffers left out.
+std::vector<BufferUse> buffers_of(const Frame&);
+
 /// The features of the general path: all that programs can be built for, with the scene's own numbers of bodies.
 SceneFeatures general_features(SceneFeatures);
 

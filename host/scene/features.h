@@ -19,6 +19,7 @@ struct SceneFeatures {
   bool anisotropic = false;    ///< some g != 0
   bool emission = false;
   int channels = 3;            ///< 1 when all coefficients are grey and all lights have one colour ratio, else 3
+  bool general = false;        ///< measure only: computed as if every region varied in everything, see general_features
   glm::vec3 tint{1};           ///< colour of that one channel; (1, 1, 1) with 3 channels
 
   bool operator==(const SceneFeatures&) const = default;

@@ -162,7 +162,7 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
     RegionParams& params = device.region_params[r];
     params.smooth_group = region.smooth_surface;
     params.index_set = -1;
-    if (!region.graded_index) continue;
+    if (!(region.graded_index || features.general) || region.opaque) continue;
     if (region.smooth_surface && smooth_set >= 0) {
       params.index_set = smooth_set;
       continue;
@@ -200,7 +200,9 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
   int coefficient_tiles = 0;
   for (int r = 0; r < regions; ++r) {
     device.region_params[r].coefficient_set =
-        medium.region(r).heterogeneous ? maps.add(presence(r, body_state, block_count), &coefficient_tiles) : -1;
+        medium.region(r).heterogeneous || (features.general && !medium.region(r).opaque)
+            ? maps.add(presence(r, body_state, block_count), &coefficient_tiles)
+            : -1;
   }
   std::vector<float> coefficients(static_cast<std::size_t>(coefficient_tiles) * kTileNodes * width);
   for (int r = 0; r < regions; ++r) {
@@ -225,7 +227,7 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
   int source_tiles = 0;
   for (int r = 0; r < regions; ++r) {
     device.region_params[r].source_set = -1;
-    if (!medium.region(r).participates()) continue;
+    if (!medium.region(r).participates() && !(features.general && !medium.region(r).opaque)) continue;
     const std::vector<int> present = presence(r, body_state, block_count);
     for (int block = 0; block < block_count; ++block) {
       if (present[block] >= 0) device.source_tiles.push_back({r, block_coordinates(block, blocks)});
@@ -247,7 +249,7 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
     copy(region.reflectance2, params.reflectance2);
     params.checker_size = region.checker_size / h;
     float eta_max = region.eta;
-    const int set = region.graded_index ? params.index_set : -1;
+    const int set = params.index_set;
     if (set >= 0) {
       for (int block = 0; block < block_count; ++block) {
         const int tile = device.tile_map[static_cast<std::size_t>(set) * block_count + block];

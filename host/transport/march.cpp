@@ -66,7 +66,8 @@ March::March(cl::Session& session, const DeviceMedium& medium, const MarchSettin
   flux_ = session.allocate<std::int64_t>(moments ? 3 * deposit_.count() : 0);
   own_sums_ = session.allocate<std::int64_t>(volumes_ * nodes * width);
   tallies_ = session.allocate<std::int64_t>(3 * TURBID_TALLY_COUNT);
-  const std::size_t texels = static_cast<std::size_t>(params_.ground_size) * params_.ground_size;
+  // Where nothing refracts, what passes is kept per shadow-map texel instead.
+  const std::size_t texels = params_.straight ? 0 : static_cast<std::size_t>(params_.ground_size) * params_.ground_size;
   ground_ = session.allocate<std::int64_t>(texels * channels);
   ground_rays_ = session.allocate<int>(texels);
   next_count_ = session.allocate<int>(1);

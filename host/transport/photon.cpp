@@ -44,6 +44,7 @@ Photons::Photons(cl::Session& session, const DeviceMedium& device, const PhotonM
   for (cl::Define& define : defines) {
     if (define.name == "TURBID_CHANNELS") define.value = 1;  // one colour at a time
   }
+  defines.push_back({"TURBID_ANISOTROPIC", device.features.anisotropic});
   program_ = session.build("photon.cl", defines);
   kernel_ = decltype(kernel_)(program_, "photon");
   words(settings.seed, params_.seed);

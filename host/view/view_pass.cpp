@@ -19,6 +19,24 @@ namespace {
 constexpr int kSamplesPerLaunch = 1 << 16;  // Ctrl-C is answered between launches
 constexpr int kInterleave = 8, kSamplesPerClaim = 64;  // of a CPU's work-item; a GPU's takes one sample
 
+int kind_of(const Light& light) {
+  return light.kind == LightKind::directional ? TURBID_LIGHT_DIRECTIONAL
+         : light.kind == LightKind::point     ? TURBID_LIGHT_POINT
+                                              : TURBID_LIGHT_SPOT;
+}
+
+/// The medium's -D integers, the kinds of lights there are, and the loop shape that suits the device.
+std::vector<cl::Define> view_defines(const ViewInput& in, bool cpu) {
+  long lights = 0;
+  for (const Light& light : in.lights) lights |= TURBID_LIGHT_BIT(kind_of(light));
+  if (in.features.general) lights = TURBID_LIGHT_BIT(3) - 1;
+  std::vector<cl::Define> defines = in.solution.device->defines();
+  defines.push_back({"TURBID_LIGHTS", lights});
+  defines.push_back({"TURBID_INTERLEAVE", cpu ? kInterleave : 1});
+  defines.push_back({"TURBID_SAMPLES_PER_CLAIM", cpu ? kSamplesPerClaim : 1});
+  return defines;
+}
+
 ViewParams make_params(const ViewInput& in, const VoxelSpace& space) {
   const float h = space.frame.voxel_size;
   ViewParams p{};
@@ -55,9 +73,7 @@ std::vector<LightParams> make_lights(const ViewInput& in, const VoxelSpace& spac
     const Light& light = in.lights[i];
     const ShadowMap& shadow = in.solution.shadows[i];
     LightParams p{};
-    p.kind = light.kind == LightKind::directional ? TURBID_LIGHT_DIRECTIONAL
-             : light.kind == LightKind::point     ? TURBID_LIGHT_POINT
-                                                  : TURBID_LIGHT_SPOT;
+    p.kind = kind_of(light);
     copy(space.point(light.position), p.position);
     copy(glm::normalize(light.direction), p.direction);
     const float half_angle = glm::radians(0.5f * light.cone_angle);
@@ -106,14 +122,6 @@ void resolve(const Strip& strip, const std::vector<float>& radiance, int first_r
   }
 }
 
-/// The medium's -D integers and the loop shape that suits the device.
-std::vector<cl::Define> view_defines(const DeviceMedium& medium, bool cpu) {
-  std::vector<cl::Define> defines = medium.defines();
-  defines.push_back({"TURBID_INTERLEAVE", cpu ? kInterleave : 1});
-  defines.push_back({"TURBID_SAMPLES_PER_CLAIM", cpu ? kSamplesPerClaim : 1});
-  return defines;
-}
-
 }  // namespace
 
 /// What all cameras share.
@@ -136,7 +144,7 @@ struct ViewPass::Prepared {
         in(input),
         space{in.medium.frame()},
         surfaces(entry_surfaces(in.description, in.medium, true)),
-        program(session.build("view.cl", view_defines(*in.solution.device, session.device().cpu))),
+        program(session.build("view.cl", view_defines(in, session.device().cpu))),
         kernel(program, "view"),
         params(make_params(in, space)) {
     std::vector<float> depth_values, ground_values, transmittance_values;

@@ -4,6 +4,23 @@
 #define TURBID_LIB_SURROUNDINGS_H
 #include "shared/view_params.h"
 
+#ifndef TURBID_LIGHTS
+#error "TURBID_LIGHTS (the sum of TURBID_LIGHT_BIT of the kinds of lights, 0 without lights) must be defined"
+#endif
+
+// The kind of a light: known to the compiler where a scene has one kind only, so that the others' code goes.
+static int kind_of(const global LightParams* light) {
+#if TURBID_LIGHTS == TURBID_LIGHT_BIT(TURBID_LIGHT_DIRECTIONAL)
+  return TURBID_LIGHT_DIRECTIONAL;
+#elif TURBID_LIGHTS == TURBID_LIGHT_BIT(TURBID_LIGHT_POINT)
+  return TURBID_LIGHT_POINT;
+#elif TURBID_LIGHTS == TURBID_LIGHT_BIT(TURBID_LIGHT_SPOT)
+  return TURBID_LIGHT_SPOT;
+#else
+  return light->kind;
+#endif
+}
+
 typedef struct {
   const global LightParams* lights;
   const global float* shadow_depths;  // all maps, row 0 = top
@@ -25,7 +42,7 @@ static float3 visibility(const Surroundings* s, const ViewParams* p, const globa
   if (c0 < 1 || r0 < 1 || c0 + 2 >= light->map_size || r0 + 2 >= light->map_size) return (float3)(1.0f);
   const float3 from = x - vload3(0, light->map_origin);
   const float depth =
-      light->kind == TURBID_LIGHT_DIRECTIONAL ? dot(from, vload3(0, light->direction)) : length(from);
+      kind_of(light) == TURBID_LIGHT_DIRECTIONAL ? dot(from, vload3(0, light->direction)) : length(from);
   const global float* map = s->shadow_depths + light->map_offset;
   // 4 x 4 texels under a 3 x 3 box that slides with the point: edges one texel soft, without steps.
   const float fu = column - c0, fv = row - r0;
@@ -52,12 +69,12 @@ static float3 direct_irradiance(const Surroundings* s, const ViewParams* p, floa
     const global LightParams* light = s->lights + i;
     float3 from = vload3(0, light->direction);
     float fall_off = 1.0f;
-    if (light->kind != TURBID_LIGHT_DIRECTIONAL) {
+    if (kind_of(light) != TURBID_LIGHT_DIRECTIONAL) {
       const float3 path = x - vload3(0, light->position);
       const float d2 = fmax(dot(path, path), 1e-6f);
       from = path * rsqrt(d2);
       fall_off = 1.0f / d2;
-      if (light->kind == TURBID_LIGHT_SPOT && dot(from, vload3(0, light->direction)) < light->cos_half_angle) continue;
+      if (kind_of(light) == TURBID_LIGHT_SPOT && dot(from, vload3(0, light->direction)) < light->cos_half_angle) continue;
     }
     const float cosine = -dot(from, n);
     if (cosine <= 0.0f) continue;

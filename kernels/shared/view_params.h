@@ -18,6 +18,7 @@ TURBID_ASSERT_SIZE(ViewSample, 48);
 #define TURBID_LIGHT_DIRECTIONAL 0
 #define TURBID_LIGHT_POINT 1
 #define TURBID_LIGHT_SPOT 2
+#define TURBID_LIGHT_BIT(kind) (1 << (kind))
 
 typedef struct {
   int kind;

@@ -21,6 +21,8 @@ TEST(KernelFiles, RayProgramsBuildForEveryKindOfScene) {
                                                    {"TURBID_RAYS_PER_CLAIM", 64},
                                                    {"TURBID_SAMPLES_PER_CLAIM", 64},
                                                    {"TURBID_OWN_SUMS", choice & 1},
+                                                   {"TURBID_FIRST_MOMENT", choice & 1},
+                                                   {"TURBID_LIGHTS", 1 << choice % 4},
                                                    {"TURBID_VOXELS_X", 16},
                                                    {"TURBID_VOXELS_Y", 24},
                                                    {"TURBID_VOXELS_Z", 8}}))

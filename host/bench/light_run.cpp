@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// See light_run.h.
+#include "host/bench/light_run.h"
+
+#include "host/study/error_measures.h"
+
+namespace turbid {
+
+LightRun::LightRun(cl::Session& session, const std::string& scene_file, const SceneOverrides& overrides,
+                   const std::function<void(Scene&)>& change) {
+  Scene scene = read_scene(scene_file, overrides);
+  if (change) change(scene);
+  scene_ = std::make_unique<SceneOnGrid>(put_on_grid(std::move(scene), *progress_));
+  prepared_ = std::make_unique<PreparedScene>(session, *scene_, *progress_);
+}
+
+void LightRun::once(bool picture, bool keep) {
+  const std::size_t before = progress_->times().size();
+  const double started = wall_time();
+  solution_ = prepared_->light();
+  const double lit = wall_time();
+  if (picture) image_ = prepared_->look(*solution_);
+  const double ended = wall_time();
+  if (!keep) return;
+  seconds_.push_back(lit - started);
+  view_.push_back(ended - lit);
+  stages_.emplace_back(progress_->times().begin() + static_cast<std::ptrdiff_t>(before), progress_->times().end());
+}
+
+Spread LightRun::frame_seconds() const {
+  std::vector<double> sums;
+  for (std::size_t i = 0; i < seconds_.size(); ++i) sums.push_back(seconds_[i] + view_[i]);
+  return spread_of(sums);
+}
+
+Spread LightRun::stage(const std::string& name) const {
+  std::vector<double> values;
+  for (const std::vector<StageTime>& times : stages_) values.push_back(seconds_of(times, name));
+  return spread_of(values);
+}
+
+void run_interleaved(const std::vector<LightRun*>& runs, int repeats, bool picture) {
+  for (int i = 0; i <= repeats; ++i)
+    for (LightRun* run : runs) run->once(picture, i > 0);
+}
+
+double relative_difference(const std::vector<float>& a, const std::vector<float>& b) {
+  return measure_errors(a, b).rel_l2;
+}
+
+}  // namespace turbid

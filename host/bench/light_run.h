@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Repeated light() of prepared scenes, interleaved where several are compared, so that drift meets all alike.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/profile/frame.h"
+#include "host/profile/spread.h"
+
+namespace turbid {
+
+/// A scene file with overrides, prepared, and what its runs took.
+class LightRun {
+ public:
+  /// `change` may alter the scene after reading.
+  LightRun(cl::Session&, const std::string& scene_file, const SceneOverrides&,
+           const std::function<void(Scene&)>& change = {});
+
+  /// One light(), and a picture if asked for; its times are kept if `keep`.
+  void once(bool picture, bool keep);
+  Spread seconds() const { return spread_of(seconds_); }   ///< of light() [s]
+  Spread view_seconds() const { return spread_of(view_); } ///< of the picture [s]
+  Spread frame_seconds() const;                            ///< of both [s]
+  Spread stage(const std::string& name) const;             ///< of one stage [s]
+  const LightSolution& solution() const { return *solution_; }
+  const ViewImage& image() const { return *image_; }
+  const SceneOnGrid& scene() const { return *scene_; }
+  PreparedScene& prepared() { return *prepared_; }
+  const std::vector<float>& fluence() const { return solution_->volume.fluence; }
+
+ private:
+  std::unique_ptr<Progress> progress_ = std::make_unique<Progress>(Verbosity::quiet);
+  std::unique_ptr<SceneOnGrid> scene_;
+  std::unique_ptr<PreparedScene> prepared_;
+  std::optional<LightSolution> solution_;
+  std::optional<ViewImage> image_;
+  std::vector<double> seconds_, view_;
+  std::vector<std::vector<StageTime>> stages_;
+};
+
+/// One run of each to warm up, then `repeats` rounds of all in turn.
+void run_interleaved(const std::vector<LightRun*>&, int repeats, bool picture);
+
+/// sqrt(sum (a - b)^2 / sum b^2).
+double relative_difference(const std::vector<float>& a, const std::vector<float>& b);
+
+}  // namespace turbid

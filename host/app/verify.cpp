@@ -70,7 +70,9 @@ void add_verify(CLI::App& program, Work& work) {
   command.add_flag("--hard", options->hard, "The hard cases instead: extreme media that must stay stable");
   CLI::Option* paper = command.add_flag(
       "--paper", options->paper, "Instead: a report on where the paper's own scheme breaks and what each remedy buys");
-  command.add_option("-o,--output", options->output, "With --paper: folder for paper.html, .json, .csv (default: out/paper)")
+  command
+      .add_option("-o,--output", options->output,
+                  "With --paper: folder for paper.html, .json, .csv (default: out/paper)")
       ->type_name("DIR")
       ->needs(paper);
   command.add_flag("--quick", options->quick, "Leave out the finest level of each refinement");

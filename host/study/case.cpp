@@ -72,7 +72,7 @@ void run_refinement(const Refinement& refinement, CaseContext& context, CaseResu
   if (context.quick && levels.size() > 2) levels.pop_back();
   const std::string variant = refinement.variant.empty() ? "" : ", " + refinement.variant;
   ErrorSeries series{refinement.parameter + variant, refinement.unit,      refinement.error_name(), {}, {},
-                refinement.order_low,           refinement.order_high};
+                     refinement.order_low,           refinement.order_high};
   for (const double level : levels) {
     const RefinedLevel found = refinement.run(context, level);
     series.levels.push_back({found.h, refinement.error(found)});

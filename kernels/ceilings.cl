@@ -15,15 +15,23 @@ kernel void stream_copy(global float16* a, const global float16* b) {
   a[i] = b[i];
 }
 
-// Eight independent chains of 16 lanes: rounds * 8 * 16 * 2 operations per work-item. They converge to 1 and stay finite.
+// Eight independent chains of 16 lanes: rounds * 8 * 16 * 2 operations per work-item. They converge to q / (1 - p) and stay
+// finite. Written out: arrays would live in memory.
 kernel void multiply_add(global float* out, int rounds, float p, float q) {
-  float16 x[8];
-  for (int k = 0; k < 8; ++k) x[k] = (float16)((float)k + (float)get_global_id(0));
+  const float16 vp = (float16)(p), vq = (float16)(q);
+  float16 x0 = (float16)((float)get_global_id(0)), x1 = x0 + 1.0f, x2 = x0 + 2.0f, x3 = x0 + 3.0f;
+  float16 x4 = x0 + 4.0f, x5 = x0 + 5.0f, x6 = x0 + 6.0f, x7 = x0 + 7.0f;
   for (int round = 0; round < rounds; ++round) {
-    for (int k = 0; k < 8; ++k) x[k] = fma(x[k], (float16)(p), (float16)(q));
+    x0 = mad(x0, vp, vq);
+    x1 = mad(x1, vp, vq);
+    x2 = mad(x2, vp, vq);
+    x3 = mad(x3, vp, vq);
+    x4 = mad(x4, vp, vq);
+    x5 = mad(x5, vp, vq);
+    x6 = mad(x6, vp, vq);
+    x7 = mad(x7, vp, vq);
   }
-  float16 sum = x[0];
-  for (int k = 1; k < 8; ++k) sum += x[k];
+  const float16 sum = ((x0 + x1) + (x2 + x3)) + ((x4 + x5) + (x6 + x7));
   const float8 half_sum = sum.lo + sum.hi;
   const float4 quarter = half_sum.lo + half_sum.hi;
   out[get_global_id(0)] = (quarter.x + quarter.y) + (quarter.z + quarter.w);

@@ -37,13 +37,21 @@ openvdb::FloatGrid::Ptr body_distance(const Solid&, const GridFrame&);
 /// Who owns each voxel, from the distances of all bodies. (voxelise.cpp)
 openvdb::Int32Grid::Ptr owner_of_voxels(const MediumVolume::Grids&);
 
-/// Number of evaluations that fill_coefficients() will report as steps of their own: the varying fields.
-int varying_fields(const Material&);
+/// What a region was before its material changed: fields that are the same objects are not evaluated again.
+struct KnownRegion {
+  const Material& material;
+  const Region& region;
+  const RegionGrids& fields;
+};
 
-/// Fills the constants, flags and grids of region `r` from its material. `after_each` ends one varying field.
-/// (region_coefficients.cpp)
-void fill_coefficients(MediumVolume::Grids&, int r, const Material&, const StepProgress& within,
-                       const std::function<void()>& after_each);
+/// Number of evaluations that fill_coefficients() will report as steps of their own: the varying fields that are not
+/// known.
+int varying_fields(const Material&, const KnownRegion* known);
+
+/// Fills the constants, flags and grids of region `r` from its material. `after_each` ends one varying field. `known`
+/// may be null. (region_coefficients.cpp)
+void fill_coefficients(MediumVolume::Grids&, int r, const Material&, const KnownRegion* known,
+                       const StepProgress& within, const std::function<void()>& after_each);
 
 /// Index of the ambient and all smooth bodies, composed and blurred by a Gaussian. (smooth_index.cpp)
 openvdb::FloatGrid::Ptr blurred_index(const MediumVolume::Grids&);

@@ -120,4 +120,10 @@ class MediumVolume {
 /// is negative, NaN or infinite, or eta < 1, naming the material, the coefficient and the position.
 MediumVolume voxelise(const MediumDescription&, const std::function<void(double)>& progress = {});
 
+/// The same for a description whose bodies and frame are those of `known`, which `medium` was made from, and whose
+/// materials may differ: distances and owners are shared with `medium`, and so is every coefficient whose Field is the
+/// same object. Equal to voxelise() in every bit.
+MediumVolume revoxelise(const MediumVolume& medium, const MediumDescription& known, const MediumDescription&,
+                        const std::function<void(double)>& progress = {});
+
 }  // namespace turbid

@@ -35,6 +35,31 @@ class ConstantField final : public Field {
   glm::vec3 value_;
 };
 
+class ScaledField final : public Field {
+ public:
+  ScaledField(FieldPtr field, glm::vec3 factor) : field_(std::move(field)), factor_(factor) {}
+  std::optional<glm::vec3> constant() const override {
+    const auto value = field_->constant();
+    return value ? std::optional(factor_ * *value) : std::nullopt;
+  }
+  void evaluate(std::span<const glm::vec3> positions, std::span<glm::vec3> values) const override {
+    field_->evaluate(positions, values);
+    if (factor_ == glm::vec3(1)) return;
+    for (glm::vec3& value : values) value *= factor_;
+  }
+  std::optional<glm::vec3> scale() const override { return factor_; }
+  std::string describe() const override {
+    if (factor_ == glm::vec3(1)) return field_->describe();
+    char text[64];
+    std::snprintf(text, sizeof text, "(%g, %g, %g) times ", factor_.x, factor_.y, factor_.z);
+    return text + field_->describe();
+  }
+
+ private:
+  FieldPtr field_;
+  glm::vec3 factor_;
+};
+
 /// A scalar formula of the position; `Index` is a callable vec3 -> float.
 template <class Index>
 class IndexField final : public Field {
@@ -59,6 +84,10 @@ FieldPtr index_field(std::string text, Index index) {
 
 FieldPtr constant_field(glm::vec3 value) {
   return std::make_shared<ConstantField>(value);
+}
+
+FieldPtr scaled_field(FieldPtr field, glm::vec3 scale) {
+  return std::make_shared<ScaledField>(std::move(field), scale);
 }
 
 FieldPtr luneburg_index(glm::vec3 centre, float radius, float eta_surface) {

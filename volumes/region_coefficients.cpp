@@ -194,16 +194,18 @@ Evaluated evaluate(const MediumVolume::Grids& medium, int r, const Material& mat
 
 }  // namespace
 
-int varying_fields(const Material& material) {
+int varying_fields(const Material& material, const KnownRegion* known) {
   if (material.opaque) return 0;
   int count = 0;
-  for (const FieldPtr& field : {material.eta, material.sigma_s, material.sigma_a, material.g, material.emission})
-    if (field && !field->constant()) ++count;
+  for (const auto member : {&Material::eta, &Material::sigma_s, &Material::sigma_a, &Material::g, &Material::emission}) {
+    const FieldPtr& field = material.*member;
+    if (field && !field->constant() && !(known && known->material.*member == field)) ++count;
+  }
   return count;
 }
 
-void fill_coefficients(MediumVolume::Grids& medium, int r, const Material& material, const StepProgress& within,
-                       const std::function<void()>& after_each) {
+void fill_coefficients(MediumVolume::Grids& medium, int r, const Material& material, const KnownRegion* known,
+                       const StepProgress& within, const std::function<void()>& after_each) {
   Region& region = medium.regions[r];
   RegionGrids& fields = medium.fields[r];
   region.opaque = material.opaque;
@@ -212,31 +214,44 @@ void fill_coefficients(MediumVolume::Grids& medium, int r, const Material& mater
   region.checker_size = material.checker_size;
   if (material.opaque) return;
 
-  const std::vector<int> blocks = varying_fields(material) > 0 ? blocks_near(medium, r) : std::vector<int>{};
-  const auto fill = [&]<class GridPtr>(const FieldPtr& field, const Rule& rule, GridPtr& grid, auto& constant,
-                                       bool& varies) {
+  const std::vector<int> blocks = varying_fields(material, known) > 0 ? blocks_near(medium, r) : std::vector<int>{};
+  // Returns whether the coefficient is positive anywhere; `was_positive` is what the known region says of that.
+  const auto fill = [&]<class Value, class GridPtr>(FieldPtr Material::*member, const Rule& rule,
+                                                     GridPtr RegionGrids::*grid, Value Region::*constant,
+                                                     bool Region::*varies, bool was_positive) {
     using GridT = typename GridPtr::element_type;
+    const FieldPtr& field = material.*member;
     if (!field) return false;
+    if (known && known->material.*member == field) {
+      fields.*grid = known->fields.*grid;
+      region.*constant = known->region.*constant;
+      region.*varies = region.*varies || fields.*grid;
+      return was_positive;
+    }
     Evaluated found;
     if (const auto value = field->constant()) {
       if (!allows(rule, *value, sizeof(typename GridT::ValueType) / sizeof(float))) refuse(material, rule, *value, "");
       found = {made_valid(rule, *value), value->x > 0 || value->y > 0 || value->z > 0};
     } else {
-      found = evaluate<GridT>(medium, r, material, rule, *field, blocks, within, grid);
-      varies = true;
+      found = evaluate<GridT>(medium, r, material, rule, *field, blocks, within, fields.*grid);
+      region.*varies = true;
       after_each();
     }
-    if constexpr (std::is_same_v<std::remove_reference_t<decltype(constant)>, float>)
-      constant = found.mean.x;
+    if constexpr (std::is_same_v<Value, float>)
+      region.*constant = found.mean.x;
     else
-      constant = found.mean;
+      region.*constant = found.mean;
     return found.positive;
   };
-  fill(material.eta, kEta, fields.eta, region.eta, region.graded_index);
-  region.scatters = fill(material.sigma_s, kSigmaS, fields.sigma_s, region.sigma_s, region.heterogeneous);
-  region.absorbs = fill(material.sigma_a, kSigmaA, fields.sigma_a, region.sigma_a, region.heterogeneous);
-  region.emits = fill(material.emission, kEmission, fields.emission, region.emission, region.heterogeneous);
-  fill(material.g, kMeanCosine, fields.g, region.g, region.heterogeneous);
+  const Region was = known ? known->region : Region{};
+  fill(&Material::eta, kEta, &RegionGrids::eta, &Region::eta, &Region::graded_index, true);
+  region.scatters = fill(&Material::sigma_s, kSigmaS, &RegionGrids::sigma_s, &Region::sigma_s, &Region::heterogeneous,
+                         was.scatters);
+  region.absorbs = fill(&Material::sigma_a, kSigmaA, &RegionGrids::sigma_a, &Region::sigma_a, &Region::heterogeneous,
+                        was.absorbs);
+  region.emits = fill(&Material::emission, kEmission, &RegionGrids::emission, &Region::emission,
+                      &Region::heterogeneous, was.emits);
+  fill(&Material::g, kMeanCosine, &RegionGrids::g, &Region::g, &Region::heterogeneous, true);
 }
 
 }  // namespace turbid

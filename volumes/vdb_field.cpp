@@ -37,6 +37,7 @@ class VdbField final : public Field {
       }
     }
   }
+  std::optional<glm::vec3> scale() const override { return scale_; }
   std::string describe() const override { return text_; }
 
  private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies and materials become voxels: distances, then who owns each voxel, then coefficients, then the blurred index.
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "host/base/errors.h"
@@ -77,7 +78,39 @@ openvdb::Int32Grid::Ptr owner_of_voxels(const MediumVolume::Grids& medium) {
   });
 }
 
-MediumVolume voxelise(const MediumDescription& scene, const std::function<void(double)>& progress) {
+namespace {
+
+/// What is known from before: grids, and the description that they were made from.
+struct Known {
+  const MediumVolume::Grids& grids;
+  const MediumDescription& description;
+};
+
+const Material* material_of(const MediumDescription& scene, int region) {
+  const int material = region > 0 ? scene.bodies[region - 1].material : scene.ambient_material;
+  return material >= 0 ? &scene.materials[material] : nullptr;
+}
+
+/// What is known of a region's coefficients; nothing of a surface that was opaque.
+std::optional<KnownRegion> known_region(const Known* known, int region) {
+  const Material* material = known ? material_of(known->description, region) : nullptr;
+  if (!material || material->opaque) return std::nullopt;
+  return KnownRegion{*material, known->grids.regions[region], known->grids.fields[region]};
+}
+
+/// Whether no index that the blur mixes has another field now.
+bool same_blur(const MediumVolume::Grids& medium, const MediumDescription& scene, const Known& known) {
+  if (!known.grids.blurred_eta) return false;
+  for (int r = 0; r < static_cast<int>(medium.regions.size()); ++r) {
+    if (medium.regions[r].smooth_surface != known.grids.regions[r].smooth_surface) return false;
+    const Material *now = material_of(scene, r), *then = material_of(known.description, r);
+    if ((now != nullptr) != (then != nullptr) || (now && now->eta != then->eta)) return false;
+  }
+  return true;
+}
+
+MediumVolume voxelise_all(const MediumDescription& scene, const Known* known,
+                          const std::function<void(double)>& progress) {
   require_consistent(scene);
   initialise_vdb();
   auto medium = std::make_unique<MediumVolume::Grids>();
@@ -87,41 +120,58 @@ MediumVolume voxelise(const MediumDescription& scene, const std::function<void(d
   medium->regions.resize(1 + scene.bodies.size());
   medium->fields.resize(1 + scene.bodies.size());
 
-  const auto material_of = [&](int r) -> const Material* {
-    const int material = r > 0 ? scene.bodies[r - 1].material : scene.ambient_material;
-    return material >= 0 ? &scene.materials[material] : nullptr;
-  };
   const int regions = static_cast<int>(medium->regions.size());
   int step_count = regions + 1;  // a distance per body, the owners, the blur
-  for (int r = 0; r < regions; ++r)
-    if (const Material* material = material_of(r)) step_count += varying_fields(*material);
+  for (int r = 0; r < regions; ++r) {
+    const auto before = known_region(known, r);
+    if (const Material* material = material_of(scene, r))
+      step_count += varying_fields(*material, before ? &*before : nullptr);
+  }
   Steps steps(progress, step_count);
   steps.within(0);
 
   for (int r = 1; r < regions; ++r) {
-    medium->fields[r].signed_distance = body_distance(scene.bodies[r - 1].solid, scene.frame);
+    medium->fields[r].signed_distance =
+        known ? known->grids.fields[r].signed_distance : body_distance(scene.bodies[r - 1].solid, scene.frame);
     steps.next();
   }
-  medium->owner = owner_of_voxels(*medium);
+  medium->owner = known ? known->grids.owner : owner_of_voxels(*medium);
   steps.next();
 
   bool any_smooth = false;
   for (int r = 0; r < regions; ++r) {
     Region& region = medium->regions[r];
     region.name = r > 0 ? scene.bodies[r - 1].name : "ambient";
-    if (const Material* material = material_of(r))
+    const auto before = known_region(known, r);
+    if (const Material* material = material_of(scene, r))
       fill_coefficients(
-          *medium, r, *material, [&](double fraction) { steps.within(fraction); }, [&] { steps.next(); });
+          *medium, r, *material, before ? &*before : nullptr, [&](double fraction) { steps.within(fraction); },
+          [&] { steps.next(); });
     region.smooth_surface = r > 0 && !region.opaque && scene.bodies[r - 1].surface == SurfaceKind::smooth;
     any_smooth = any_smooth || region.smooth_surface;
   }
   if (any_smooth) {
     medium->regions[0].smooth_surface = true;
-    medium->blurred_eta = blurred_index(*medium);
+    medium->blurred_eta =
+        known && same_blur(*medium, scene, *known) ? known->grids.blurred_eta : blurred_index(*medium);
     for (Region& region : medium->regions) region.graded_index = region.graded_index || region.smooth_surface;
   }
   steps.next();
   return MediumVolume(std::move(medium));
+}
+
+}  // namespace
+
+MediumVolume voxelise(const MediumDescription& scene, const std::function<void(double)>& progress) {
+  return voxelise_all(scene, nullptr, progress);
+}
+
+MediumVolume revoxelise(const MediumVolume& medium, const MediumDescription& known, const MediumDescription& scene,
+                        const std::function<void(double)>& progress) {
+  const Known before{medium.grids(), known};
+  if (known.bodies.size() != scene.bodies.size() || known.frame.voxels != scene.frame.voxels)
+    throw std::invalid_argument("revoxelise: other bodies or another frame");
+  return voxelise_all(scene, &before, progress);
 }
 
 }  // namespace turbid

@@ -16,6 +16,7 @@ void add_check(CLI::App& program, Work& work);
 void add_devices(CLI::App& program, Work& work);
 void add_info(CLI::App& program, Work& work);
 void add_compare(CLI::App& program, Work& work);
+void add_profile(CLI::App& program, Work& work);
 void add_verify(CLI::App& program, Work& work);
 
 }  // namespace turbid::app

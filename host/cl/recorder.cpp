@@ -28,6 +28,12 @@ std::size_t Command::bytes() const {
   return sum;
 }
 
+std::size_t Command::bytes_of(const std::string& argument) const {
+  for (const TouchedBuffer& buffer : buffers)
+    if (buffer.argument == argument) return buffer.bytes;
+  return 0;
+}
+
 void Recorder::start() {
   commands_.clear();
   events_.clear();

@@ -32,10 +32,13 @@ struct Command {
   double queued = 0, submitted = 0, started = 0, ended = 0;
   std::array<std::size_t, 2> global{}, local{};
   std::vector<TouchedBuffer> buffers;
+  std::map<std::string, long> integers;  ///< whole-numbered arguments of a kernel by name
 
   bool is_kernel() const { return !program.empty(); }
   double seconds() const { return ended - started; }
   std::size_t bytes() const;    ///< of all its buffers, each counted once
+  /// Bytes of the buffer that the kernel knows by this name; 0 if there is none.
+  std::size_t bytes_of(const std::string& argument) const;
 };
 
 /// A program built while the recorder was on.

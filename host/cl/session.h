@@ -151,7 +151,10 @@ class Kernel {
     recording.touches(argument_name(handle_.get(), index), buffer.bytes(), buffer.get());
   }
   template <class T>
-  void note(Recording&, cl_uint, const T&) {}
+  void note(Recording& recording, cl_uint index, const T& value) {
+    if constexpr (std::is_integral_v<T>)
+      recording.command().integers[argument_name(handle_.get(), index)] = static_cast<long>(value);
+  }
 
   KernelHandle handle_;
   const char* name_ = "";
@@ -252,6 +255,12 @@ class Session {
   /// Names what the host does from now on, for the recorder and the count of memory.
   void stage(const std::string& name);
   const MemoryCount& memory() const { return *memory_; }
+  /// Counts the peak and the stages anew from what is held now.
+  void restart_memory_count() {
+    memory_->peak = memory_->now;
+    memory_->allocations = 0;
+    memory_->by_stage.clear();
+  }
 
  private:
   void require_memory(std::size_t bytes) const;

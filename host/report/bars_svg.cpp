@@ -36,7 +36,7 @@ void draw_bar(Svg& svg, const BarChart& chart, std::size_t series, std::size_t g
   const double start = end;
   if (showable(chart.value, value)) {
     end = std::clamp(scale(value), left, right);
-    svg.rectangle({std::min(start, end), slot.y, std::abs(end - start), slot.height}, "area " + colour_class(series),
+    svg.rectangle({std::min(start, end), slot.y, std::abs(end - start), slot.height}, area_classes(series),
                   one.name + ": " + number_text(value, 6));
   }
   if (!one.low.empty() && !one.high.empty() && std::isfinite(one.low[group]) && std::isfinite(one.high[group])) {

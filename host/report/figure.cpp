@@ -21,6 +21,10 @@ std::string colour_class(std::size_t index) {
   return "c" + std::to_string(index % 8);
 }
 
+std::string area_classes(std::size_t index) {
+  return "area " + colour_class(index) + (index / 8 % 2 == 1 ? " pale" : "");
+}
+
 std::string axis_title(const Axis& axis) {
   return axis.unit.empty() ? axis.label : axis.label + " [" + axis.unit + "]";
 }
@@ -53,7 +57,7 @@ void Legend::draw(Svg& svg, Point corner) const {
     const double x = corner.x + places_[i].x, y = corner.y + (places_[i].row + 0.7) * 1.45 * font_;
     const bool dashed = entry.swatch == Swatch::dashed_line || entry.swatch == Swatch::dashed_line_and_markers;
     if (entry.swatch == Swatch::area)
-      svg.rectangle({x + 0.5 * font_, y - 0.4 * font_, font_, 0.8 * font_}, "area " + colour);
+      svg.rectangle({x + 0.5 * font_, y - 0.4 * font_, font_, 0.8 * font_}, area_classes(entry.index));
     else if (entry.swatch != Swatch::markers)
       svg.line({x, y}, {x + swatch_, y}, "series " + colour + (dashed ? " dashed" : ""));
     if (entry.swatch == Swatch::markers || entry.swatch == Swatch::line_and_markers ||

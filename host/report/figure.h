@@ -22,6 +22,9 @@ std::string left_out(const Timeline&);
 /// Class of the colour of a series, by index modulo 8.
 std::string colour_class(std::size_t index);
 
+/// Classes of an area of that colour; the second eight are pale with an outline.
+std::string area_classes(std::size_t index);
+
 enum class Swatch { line, dashed_line, markers, line_and_markers, dashed_line_and_markers, area };
 
 struct LegendEntry {

@@ -79,7 +79,8 @@ svg .heavy.series { stroke-width: 3.2; }
 svg .error { stroke: currentColor; stroke-width: 1.3; }
 svg .ink { color: var(--ink); }
 svg .area { fill: currentColor; }
-svg .outlined { stroke: var(--paper); stroke-width: .7; }
+svg .pale { fill-opacity: .35; stroke: currentColor; stroke-width: 1; }
+svg .outlined:not(.pale) { stroke: var(--paper); stroke-width: .7; }
 svg .slope { stroke: var(--muted); stroke-width: 1.2; stroke-dasharray: 2 3; }
 svg .slope-label { fill: var(--muted); font-style: italic; }
 svg .marker-line { stroke: var(--muted); stroke-width: 1.2; stroke-dasharray: 8 3 2 3; }

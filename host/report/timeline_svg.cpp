@@ -18,6 +18,22 @@ bool drawable(const Interval& one) {
   return showable(linear, one.begin) && showable(linear, one.end) && one.begin <= one.end;
 }
 
+/// Names of intervals, the longest in all first: colours are few, and those are seen most.
+std::vector<std::string> names_by_time(const Timeline& timeline) {
+  std::vector<std::pair<std::string, double>> totals;  // in order of appearance
+  std::map<std::string, std::size_t> place;
+  for (const Track& track : timeline.tracks)
+    for (const Interval& one : track.intervals) {
+      if (!drawable(one)) continue;
+      if (place.emplace(one.name, totals.size()).second) totals.emplace_back(one.name, 0);
+      totals[place[one.name]].second += one.end - one.begin;
+    }
+  std::stable_sort(totals.begin(), totals.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::vector<std::string> names;
+  for (const auto& [name, total] : totals) names.push_back(name);
+  return names;
+}
+
 struct Bar {
   double from, to;  // [px]
   std::size_t colour;
@@ -76,9 +92,11 @@ std::string timeline_svg(const Timeline& timeline, const FigureLayout& layout) {
     for (const Interval& one : track.intervals) {
       if (!drawable(one)) continue;
       ends.insert(ends.end(), {one.begin, one.end});
-      if (colours.emplace(one.name, colours.size()).second)
-        entries.push_back({one.name, colours[one.name], Swatch::area});
     }
+  }
+  for (const std::string& name : names_by_time(timeline)) {
+    entries.push_back({name, colours.size(), Swatch::area});
+    colours.emplace(name, colours.size());
   }
   const Legend legend(layout, entries);
   names = names_above ? 0 : std::min(names, kWidestNames * layout.width);
@@ -104,8 +122,7 @@ std::string timeline_svg(const Timeline& timeline, const FigureLayout& layout) {
     const double y = top + name_height, height = row - 0.6 * font;
     for (const Bar& bar : bars_of(track, scale, colours))
       svg.rectangle({bar.from, y, std::max(bar.to - bar.from, 0.8), height},
-                    "area " + colour_class(bar.colour) + (bar.to - bar.from > 3 ? " outlined" : ""),
-                    tooltip(bar, timeline.unit));
+                    area_classes(bar.colour) + (bar.to - bar.from > 3 ? " outlined" : ""), tooltip(bar, timeline.unit));
   }
   svg.line({box.x, box.y}, {box.x, box.y + box.height}, "axis");
   return svg.str();

@@ -4,44 +4,44 @@
 #pragma once
 #include <deque>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "host/scene/scene.h"
 
 namespace turbid::scene {
 
 /// One table. A value that stands for a file has a second text, made from the file's content, that is hashed instead.
 class EffectiveTable {
  public:
+  explicit EffectiveTable(std::string header = "") { section_.header = std::move(header); }
+  explicit EffectiveTable(SceneSection section) : section_(std::move(section)) {}
   void add(const std::string& key, const std::string& value) { add(key, value, value); }
   void add(const std::string& key, const std::string& value, const std::string& hashed);
   /// A table within this one, written inline.
   void add(const std::string& key, const EffectiveTable& table) {
     add(key, table.inline_text(false), table.inline_text(true));
   }
-  void comment(const std::string& line) { comments_.push_back(line); }
+  void comment(const std::string& line) { section_.comments.push_back(line); }
 
   std::string inline_text(bool hashed) const;  ///< `{ a = 1, b = 2 }`
-  std::string block_text(bool hashed) const;   ///< a line per key; comments are not hashed
+  const SceneSection& section() const { return section_; }
 
  private:
-  struct Entry {
-    std::string key, value, hashed;
-  };
-  std::vector<Entry> entries_;
-  std::vector<std::string> comments_;
+  SceneSection section_;
 };
 
 class EffectiveScene {
  public:
   /// `header`: `[camera]`, `[[light]]`; empty for the top level, which comes first.
-  EffectiveTable& section(const std::string& header);
-  std::string text(bool hashed) const;
+  EffectiveTable& section(const std::string& header) { return tables_.emplace_back(header); }
+  /// Takes over tables of a scene that was read before.
+  void keep(const SceneSection& section) { tables_.emplace_back(section); }
+  /// Writes sections, text and hash into the scene.
+  void finish(Scene& scene) const;
 
  private:
-  struct Section {
-    std::string header;
-    EffectiveTable table;
-  };
-  std::deque<Section> sections_;  ///< a deque: references to its tables stay valid
+  std::deque<EffectiveTable> tables_;  ///< a deque: references to its tables stay valid
 };
 
 /// 16 hex digits of FNV-1a, 64 bits.

@@ -34,10 +34,16 @@ struct DomainSpec {
   std::string ambient;  ///< material name; empty: vacuum
 };
 
+/// The top level: unit and background.
+void read_top(Reading& reading, const toml::table& root);
 /// [domain]: sets faces and smoothing.
 DomainSpec read_domain(Reading& reading, const toml::table& root);
 /// [material.NAME], in alphabetical order.
 void read_materials(Reading& reading, const toml::table& root);
+/// One of them.
+Material read_material(const Reading& reading, const TableReader& table);
+/// `[material.NAME]`
+std::string material_header(const std::string& name);
 /// Index of a material; an error with the known names if there is none.
 int find_material(const Reading& reading, const toml::node& node, std::string_view key);
 /// [[object]]; returns where each one stands in the file, for messages.
@@ -50,6 +56,9 @@ void read_lights(Reading& reading, const toml::table& root);
 void read_camera(Reading& reading, const toml::table& root);
 /// [solver] and [view]
 void read_settings(Reading& reading, const toml::table& root);
+
+/// Whether there is anything to meet and to see; warns of what is not used. `has_box`: the domain says how far it reaches.
+void check_whole(Reading& reading, bool has_box);
 
 /// Colour2 and edge of `checker = { colour, size }`; a plain colour without it.
 void read_checker(const Reading& reading, const TableReader& table, glm::vec3 colour, glm::vec3& colour2, float& size);

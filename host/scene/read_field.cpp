@@ -18,8 +18,14 @@ FieldPtr with_place(const toml::node& node, const std::string& key, Make make) {
   }
 }
 
+/// A factor or summand of the values: one number or, for colours, three.
+glm::vec3 read_factor(const TableReader& table, const FieldRule& rule, const char* name, float fallback) {
+  return rule.colour ? table.colour(name, Range::any(), glm::vec3(fallback))
+                     : glm::vec3(table.number(name, Range::any(), fallback));
+}
+
 FieldPtr read_expression(const TableReader& table, const std::string& key, const FieldRule& rule) {
-  table.allow({"expression"});
+  table.allow({"expression", "scale"});
   const toml::node& node = table.need("expression");
   const std::string expected =
       rule.colour ? "expected a text, or three for red, green, blue" : "expected a text in quotes";
@@ -37,18 +43,15 @@ FieldPtr read_expression(const TableReader& table, const std::string& key, const
     table.effective().add("expression", std::string("[") + toml_string(texts[0]) + ", " + toml_string(texts[1]) + ", " +
                                             toml_string(texts[2]) + "]");
   }
-  return with_place(node, key, [&] { return expression_field(texts); });
+  const glm::vec3 scale = read_factor(table, rule, "scale", 1);
+  return with_place(node, key, [&] { return scaled_field(expression_field(texts), scale); });
 }
 
 FieldPtr read_vdb(const Reading& reading, const TableReader& table, const std::string& key, const FieldRule& rule) {
   table.allow({"vdb", "grid", "scale", "offset"});
   const std::string path = read_file_key(reading, table, "vdb");
   const std::string grid = table.has("grid") ? table.text("grid") : "";
-  const auto factor = [&](const char* name, float fallback) {
-    return rule.colour ? table.colour(name, Range::any(), glm::vec3(fallback))
-                       : glm::vec3(table.number(name, Range::any(), fallback));
-  };
-  const glm::vec3 scale = factor("scale", 1), offset = factor("offset", 0);
+  const glm::vec3 scale = read_factor(table, rule, "scale", 1), offset = read_factor(table, rule, "offset", 0);
   return with_place(table.need("vdb"), key, [&] { return vdb_field(path, grid, scale, offset); });
 }
 

@@ -5,7 +5,6 @@
 #include "host/scene/toml_text.h"
 
 namespace turbid::scene {
-namespace {
 
 Material read_material(const Reading& reading, const TableReader& table) {
   const std::string& unit = reading.scene.unit;
@@ -29,7 +28,7 @@ Material read_material(const Reading& reading, const TableReader& table) {
   return material;
 }
 
-}  // namespace
+std::string material_header(const std::string& name) { return "[material." + key_text(name) + "]"; }
 
 void read_checker(const Reading& reading, const TableReader& table, glm::vec3 colour, glm::vec3& colour2, float& size) {
   colour2 = colour;
@@ -49,7 +48,7 @@ void read_materials(Reading& reading, const toml::table& root) {
   if (!materials) return;
   for (const auto& [key, node] : *materials) {
     const std::string name(key.str());
-    const std::string header = "[material." + key_text(name) + "]";
+    const std::string header = material_header(name);
     if (!node.is_table())
       throw InputError(place_of(node.source()) + ": material." + key_text(name) + " = " + text_of(node) +
                        ": expected a table, " + header);

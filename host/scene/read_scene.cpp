@@ -65,7 +65,9 @@ bool shines(const Material& material) {
   return !material.opaque && (!constant || *constant != glm::vec3(0));
 }
 
-void check_whole(Reading& reading, const DomainSpec& domain) {
+}  // namespace
+
+void check_whole(Reading& reading, bool has_box) {
   Scene& scene = reading.scene;
   const MediumDescription& medium = scene.medium;
   const bool ambient =
@@ -74,7 +76,7 @@ void check_whole(Reading& reading, const DomainSpec& domain) {
     throw InputError(scene.path +
                      ": holds nothing that light could meet: add an [[object]], or give [domain] a material that "
                      "scatters, absorbs, emits or bends light");
-  if (ambient && !domain.box && !medium.bodies.empty())
+  if (ambient && !has_box && !medium.bodies.empty())
     scene.warnings.push_back(
         scene.path +
         ": the domain's own medium ends two voxels beyond the objects; give [domain] min and max to "
@@ -93,7 +95,18 @@ void check_whole(Reading& reading, const DomainSpec& domain) {
                      ": has a camera but no light: add a [[light]], or an object whose material has emission");
 }
 
-}  // namespace
+void read_top(Reading& reading, const toml::table& root) {
+  Scene& scene = reading.scene;
+  const TableReader top(root, "a scene", reading.effective.section(""));
+  top.allow(
+      {"unit", "background", "domain", "material", "object", "light", "camera", "ground", "film", "solver", "view"});
+  scene.unit = top.text("unit", scene.unit);
+  if (scene.unit.size() > 16 || scene.unit.find_first_of("\n\r\t[]") != std::string::npos)
+    top.fail("unit", "expected the short name of a length, such as \"mm\"");
+  scene.surroundings.background =
+      top.colour("background", Range::at_least(0, "W/(" + scene.unit + "^2 sr)"), scene.surroundings.background);
+}
+
 }  // namespace scene
 
 Scene read_scene(const std::string& path, const SceneOverrides& overrides) {
@@ -106,15 +119,7 @@ Scene read_scene(const std::string& path, const SceneOverrides& overrides) {
   Scene& scene = reading.scene;
   scene.path = path;
   scene.name = std::filesystem::path(path).stem().string();
-  const TableReader top(root, "a scene", reading.effective.section(""));
-  top.allow(
-      {"unit", "background", "domain", "material", "object", "light", "camera", "ground", "film", "solver", "view"});
-  scene.unit = top.text("unit", scene.unit);
-  if (scene.unit.size() > 16 || scene.unit.find_first_of("\n\r\t[]") != std::string::npos)
-    top.fail("unit", "expected the short name of a length, such as \"mm\"");
-  scene.surroundings.background =
-      top.colour("background", Range::at_least(0, "W/(" + scene.unit + "^2 sr)"), scene.surroundings.background);
-
+  read_top(reading, root);
   const DomainSpec domain = read_domain(reading, root);
   read_materials(reading, root);
   if (!domain.ambient.empty()) {
@@ -127,11 +132,10 @@ Scene read_scene(const std::string& path, const SceneOverrides& overrides) {
   read_lights(reading, root);
   read_camera(reading, root);
   read_settings(reading, root);
-  check_whole(reading, domain);
+  check_whole(reading, domain.box.has_value());
   fix_frame(reading, domain, places);
 
-  scene.effective_toml = reading.effective.text(false);
-  scene.hash = hash_text(reading.effective.text(true));
+  reading.effective.finish(scene);
   return std::move(reading.scene);
 }
 

@@ -32,18 +32,15 @@ LightSolution solve_light(cl::Session& session, const SceneOnGrid& in, Progress&
 
 ViewImage look_at(cl::Session& session, const SceneOnGrid& in, const LightSolution& solution, Progress& progress) {
   if (!in.scene.has_camera) throw std::invalid_argument("look_at: the scene has no camera");
-  ViewImage image = render_view(session,
-                                {.description = in.scene.medium,
-                                 .medium = in.medium,
-                                 .features = in.features,
-                                 .solution = solution,
-                                 .lights = in.scene.lights,
-                                 .camera = in.scene.camera,
-                                 .surroundings = in.scene.surroundings,
-                                 .settings = in.scene.view},
-                                progress);
-  progress.finish();
-  return image;
+  return render_view(session,
+                     {.description = in.scene.medium,
+                      .medium = in.medium,
+                      .features = in.features,
+                      .solution = solution,
+                      .lights = in.scene.lights,
+                      .surroundings = in.scene.surroundings,
+                      .settings = in.scene.view},
+                     in.scene.camera, progress);
 }
 
 double SceneRun::seconds() const {

@@ -105,10 +105,9 @@ ViewImage look_at(cl::Session& session, const Run& run, const LightList& lights,
                       .features = run.features,
                       .solution = run.solution,
                       .lights = lights,
-                      .camera = camera,
                       .surroundings = surroundings,
                       .settings = settings},
-                     progress);
+                     camera, progress);
 }
 
 Marched march(cl::Session& session, const MediumDescription& scene, const LightList& lights,

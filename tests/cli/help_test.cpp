@@ -13,7 +13,7 @@ TEST(Help, every_command_explains_itself_with_an_example) {
   const Outcome all = place.turbid({"--help"});
   EXPECT_EQ(all.status, 0);
   EXPECT_EQ(all.err, "");
-  for (const std::string command : {"render", "solve", "voxelise", "check", "devices", "info", "compare", "verify"}) {
+  for (const std::string command : {"render", "solve", "voxelise", "check", "devices", "info", "compare", "profile", "verify"}) {
     EXPECT_NE(all.out.find("\n  " + command + " "), std::string::npos) << all.out;
     const Outcome help = place.turbid({command, "--help"});
     EXPECT_EQ(help.status, 0);

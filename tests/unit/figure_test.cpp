@@ -133,6 +133,15 @@ TEST(Timeline, MergesIntervalsThatLieCloserThanAPixelCanShow) {
   expect_finite(timeline_svg(Timeline{.id = "q"}, kWideFigure));
 }
 
+TEST(Timeline, GivesTheFirstColoursToWhatTakesLongest) {
+  Timeline timeline{.id = "q", .tracks = {{"queue"}}};
+  for (int i = 0; i < 9; ++i)  // the ninth name takes longest, the first least
+    timeline.tracks[0].intervals.push_back({"k" + std::to_string(i), i * 10.0, i * 10.0 + i + 1});
+  const std::string svg = timeline_svg(timeline, kWideFigure);
+  EXPECT_NE(svg.find("class=\"area c0 outlined\"><title>k8:"), std::string::npos);
+  EXPECT_NE(svg.find("class=\"area c0 pale outlined\"><title>k0:"), std::string::npos) << "not the same as k8";
+}
+
 TEST(LabelRoom, PlacesNoLabelOverAnother) {
   LabelRoom room({0, 0, 100, 100});
   room.take_line({0, 50}, {100, 50});

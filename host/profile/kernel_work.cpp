@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// The counts. Operations are those of the formulas as written in the kernel files: additions, multiplications, divisions
+// and roots one each.
+#include "host/profile/kernel_work.h"
+
+#include <algorithm>
+
+namespace turbid {
+namespace {
+
+/// A kernel that does the same to every element of a field.
+struct FieldKernel {
+  const char* name;
+  const char* field;            ///< argument whose floats are the elements
+  double operations;            ///< per element, and per ...
+  const char* times;            ///< ... unit of this integer argument; null: once
+  std::vector<const char*> in_and_out;  ///< arguments that are both read and written
+  const char* how;
+};
+
+// A x of one voxel: six differences, products and sums, the diagonal's product: 20.
+const std::vector<FieldKernel>& field_kernels() {
+  static const std::vector<FieldKernel> table{
+      {"sweep", "source", 50, "inner", {"populations", "fluence"},
+       "per voxel, colour and inner step: 5 sums of populations, 3 for phi', 3 x 14 for even and odd parts"},
+      {"balance", "source", 64, nullptr, {}, "one lattice step, and 14 for sums of absorbed and escaped power"},
+      {"smooth", "b", 14, "sweeps", {}, "per voxel, colour and sweep: six products and sums, the scaling, the choice"},
+      {"restrict_residual", "b", 22, nullptr, {}, "A x (20), its difference from b, the sum into the coarse voxel"},
+      {"prolong", "x", 1, nullptr, {"x"}, "one addition per voxel"},
+      {"apply", "x", 22, nullptr, {}, "A x (20) and its product with x, summed"},
+      {"advance_solution", "x", 5, nullptr, {"x", "r"}, "two scaled additions, one sum"},
+      {"true_residual", "x", 22, nullptr, {}, "A x (20), its difference from b, one sum"},
+      {"dot_product", "u", 2, nullptr, {}, "one product, one sum"},
+      {"next_direction", "p", 2, nullptr, {"p"}, "one product, one sum"},
+  };
+  return table;
+}
+
+/// One step of a ray. Trilinear interpolation of w values: 7 w interpolations of 3 operations from 8 w floats.
+KernelWork per_step(const SceneFeatures& f) {
+  KernelWork step{8, 60, {}};  // the block's region and a tile's number; locating, moving on, the domain's faces
+  const auto interpolate = [&](double width, double times) {
+    step.bytes += times * 8 * width * 4;
+    step.operations += times * 7 * width * 3;
+  };
+  if (f.heterogeneous) interpolate(f.channels == 3 ? 8 : 2, 1);
+  if (f.graded_index) interpolate(4, 2);  // both kicks
+  if (f.absorption || f.scattering) step.operations += 12 * f.channels;  // extinction: exp counted as 8
+  return step;
+}
+
+KernelWork march_work(const RayWork& rays, const SceneFeatures& f) {
+  const KernelWork step = per_step(f);
+  // A deposit reads and writes eight nodes of 8 bytes per colour; a ray's state is 80 bytes.
+  return {rays.march_steps * step.bytes + rays.deposits * 8 * 8 * 2 * f.channels + rays.rays * 160,
+          rays.march_steps * step.operations + rays.deposits * 8 * (2 + 2 * f.channels) + rays.interfaces * 60,
+          "per step of a ray: cell, tiles interpolated, extinction; per deposit: eight nodes read and written; per "
+          "surface: Snell and Fresnel"};
+}
+
+KernelWork view_work(const RayWork& rays, const SceneFeatures& f) {
+  KernelWork step = per_step(f);
+  const double width = f.channels == 3 ? 4 : 1;
+  if (f.scattering) {
+    step.bytes += 8 * width * 4;
+    step.operations += 7 * width * 3 + 6 * f.channels;
+  }
+  return {rays.view_steps * step.bytes + rays.samples * 80, rays.view_steps * step.operations,
+          "per step of a camera path: cell, tiles interpolated, extinction, the source gathered"};
+}
+
+}  // namespace
+
+KernelWork work_of(const std::vector<const cl::Command*>& launches, const RayWork& rays, const SceneFeatures& features) {
+  if (launches.empty()) return {};
+  const std::string& name = launches[0]->name;
+  if (name == "march") return march_work(rays, features);
+  if (name == "view") return view_work(rays, features);
+  KernelWork work{0, 0, launches[0]->is_kernel() ? "buffers given, each once" : "bytes moved"};
+  for (const cl::Command* launch : launches) work.bytes += static_cast<double>(launch->bytes());
+  const auto& table = field_kernels();
+  const auto found = std::find_if(table.begin(), table.end(), [&](const FieldKernel& k) { return name == k.name; });
+  if (found == table.end()) return work;
+  for (const cl::Command* launch : launches) {
+    const double elements = static_cast<double>(launch->bytes_of(found->field)) / 4;
+    double times = 1;
+    if (found->times) {
+      const auto integer = launch->integers.find(found->times);
+      times = integer == launch->integers.end() ? 0 : static_cast<double>(integer->second);
+    }
+    work.operations += elements * found->operations * times;
+    for (const char* argument : found->in_and_out) work.bytes += static_cast<double>(launch->bytes_of(argument));
+  }
+  work.counted = found->how;
+  return work;
+}
+
+}  // namespace turbid

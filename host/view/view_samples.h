@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// A camera's samples: what each pixel sees first, from a rasterised picture of the bodies' surfaces. Private to host/view.
+#pragma once
+#include <vector>
+
+#include "host/raster/raster.h"
+#include "host/transport/light_rays.h"
+#include "host/view/view_pass.h"
+#include "kernels/shared/view_params.h"
+
+namespace turbid {
+
+inline constexpr float kFarAway = 1e10f;  ///< depth of a sample that hits nothing
+
+inline void copy(glm::vec3 from, float (&to)[3]) {
+  for (int i = 0; i < 3; ++i) to[i] = from[i];
+}
+
+/// The frame's voxel coordinates of scene points.
+struct VoxelSpace {
+  GridFrame frame;
+  glm::vec3 point(glm::vec3 x) const { return (x - frame.origin) / frame.voxel_size; }
+};
+
+/// The samples of a strip of rows, and what the host knows of their first hits.
+struct Strip {
+  std::vector<ViewSample> samples;
+  std::vector<float> depth;        // per sample
+  std::vector<glm::vec3> normal;
+  std::vector<float> coverage;
+};
+
+class SampleMaker {
+ public:
+  /// Rasterises the first hits. Keeps references to the input and the camera.
+  SampleMaker(const ViewInput&, const Camera&, const EntrySurfaces&, const VoxelSpace&);
+  int grid() const { return grid_; }  ///< samples along a pixel's edge
+
+  /// Samples of pixel rows [first, last).
+  Strip strip(int first, int last) const;
+
+ private:
+  glm::vec3 direction_of(int x, int y) const;
+  void add(int x, int y, Strip* out) const;
+  void start_at(glm::vec3 hit, glm::vec3 direction, int region, glm::vec3 normal, ViewSample* sample) const;
+  float ground_distance(glm::vec3 eye, glm::vec3 direction) const;
+
+  const ViewInput& in_;
+  const Camera& camera_;
+  VoxelSpace space_;
+  int grid_;
+  RasterView view_;
+  RasterImage image_;
+  glm::dmat4 clip_to_world_{1};
+  bool ambient_ = false;
+  int camera_region_ = -1;
+};
+
+}  // namespace turbid

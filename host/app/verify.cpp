@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // turbid verify: cases with a known answer, run on this machine's device. Status 1 if one fails.
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "host/app/command.h"
@@ -14,9 +15,8 @@ namespace {
 
 struct VerifyOptions : TalkOptions {
   std::vector<std::string> wanted;
-  std::string device;
+  std::string device, output;
   bool hard = false, quick = false, list = false, paper = false;
-  std::string output;  ///< of --paper
 };
 
 /// In the order of the list, each once.
@@ -40,10 +40,20 @@ std::vector<const Case*> chosen_cases(const VerifyOptions& options) {
   return chosen;
 }
 
+/// A folder gets files of that name.
+std::string report_prefix(const std::string& wanted, const std::string& name) {
+  const bool folder = !wanted.empty() && (wanted.back() == '/' || std::filesystem::is_directory(wanted));
+  return folder ? (std::filesystem::path(wanted) / name).string() : wanted;
+}
+
 void verify(const VerifyOptions& options) {
-  if (options.paper) return verify_paper({options, options.device, options.output, options.quick});
+  if (options.paper)
+    return verify_paper({options, options.device,
+                         report_prefix(options.output.empty() ? "out/paper/" : options.output, "paper"),
+                         options.quick});
   if (options.list) return print(options.json ? case_list_json(cases()) : case_list_text(cases()));
   const std::vector<const Case*> chosen = chosen_cases(options);
+  const std::string prefix = report_prefix(options.output, "verify");
   const cl::DeviceChoice choice = cl::choose_device(options.device);
   cl::Session session(choice);
   Progress progress(options.verbosity());
@@ -56,6 +66,11 @@ void verify(const VerifyOptions& options) {
     if (!options.json) print(verified_case_text(report.cases.back()));
   }
   if (options.json) print(verify_json(report));
+  if (!options.output.empty()) {
+    const NamedTexts files = write_document(verify_document(report, choice.device), prefix);
+    for (const auto& [name, file] : files)
+      if (name == "html" && !options.json) print("report " + file + "\n");
+  }
   if (report.failed() > 0) throw VerificationError(report.verdict());
   if (!options.json) print(report.verdict() + "\n");
 }
@@ -68,21 +83,22 @@ void add_verify(CLI::App& program, Work& work) {
   command.add_option("CASE", options->wanted, "Numbers or names of cases (default: all that are not hard)");
   command.add_flag("--list", options->list, "List the cases and end");
   command.add_flag("--hard", options->hard, "The hard cases instead: extreme media that must stay stable");
-  CLI::Option* paper = command.add_flag(
-      "--paper", options->paper, "Instead: a report on where the paper's own scheme breaks and what each remedy buys");
+  command.add_flag("--paper", options->paper,
+                   "Instead: a report on where the paper's own scheme breaks and what each remedy buys");
+  command.add_flag("--quick", options->quick, "Leave out the finest level of each refinement");
   command
       .add_option("-o,--output", options->output,
-                  "With --paper: folder for paper.html, .json, .csv (default: out/paper)")
-      ->type_name("DIR")
-      ->needs(paper);
-  command.add_flag("--quick", options->quick, "Leave out the finest level of each refinement");
+                  "Also write PREFIX.html, PREFIX.json and a CSV file per table; into a folder: DIR/verify.html, ...; "
+                  "with --paper DIR/paper.html, ... "
+                  "(default: out/paper/)")
+      ->type_name("PREFIX");
   add_device_option(command, options->device);
   add_talk_options(command, *options);
   command.footer(
       "Prints for each case its equation, the expected values with their source, what was got, the tolerance and its\n"
       "reason, and observed orders of convergence with 95 % intervals.\n"
       "Exit status: 0 all passed, 1 a case failed, 2 no such case.\n"
-      "Examples:\n  turbid verify 6 luneburg\n  turbid verify --hard\n  turbid verify --paper -o report");
+      "Examples:\n  turbid verify 6 luneburg\n  turbid verify --hard\n  turbid verify --paper -o report/");
   command.callback([options, &work] { work = [options] { verify(*options); }; });
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "host/report/document.h"
 #include "host/study/case.h"
 
 namespace turbid {
@@ -30,5 +31,7 @@ std::string verified_case_text(const VerifiedCase&);
 std::string case_list_text(const std::vector<Case>&);
 std::string case_list_json(const std::vector<Case>&);
 std::string verify_json(const VerifyReport&);
+/// The same as a page: an overview, then a table and a plot per case.
+Document verify_document(const VerifyReport&, const cl::DeviceInfo&);
 
 }  // namespace turbid

@@ -5,6 +5,7 @@
 
 #include "host/study/case_lists.h"
 #include "host/study/diffusion_runs.h"
+#include "host/study/photon_checks.h"
 #include "host/transport/fresnel_moments.h"
 
 namespace turbid::study {
@@ -44,6 +45,7 @@ Case slab_case() {
                       "exact for any voxel; float and a solve to 1e-6");
     }
     result.note_imbalance(imbalance);
+    check_slab_photons(context, result);
   };
   return c;
 }
@@ -76,6 +78,7 @@ Case layers_case() {
     result.relative("T, no jump", 2.0 / 17, two_layers(context, 1.3f, 1.3f, imbalance), 1e-4,
                     "exact on the grid; float and a solve to 1e-6");
     result.note_imbalance(imbalance);
+    check_layer_photons(context, result);
   };
   return c;
 }
@@ -146,8 +149,9 @@ Case sphere_case() {
          .equation = "u = (a e^-kr + b e^kr) / r, u + 2 A D u' = 0 at R: escape .59897",
          .source = "diffusion with the extrapolated boundary, A = 1; levels are 16^3, 32^3, 64^3"};
   c.refinements = {sphere_refinement(1, exact_escape(1), {16, 32, 64})};
-  c.check = [](CaseContext&, CaseResult& result) {
+  c.check = [](CaseContext& context, CaseResult& result) {
     result.absolute("escape, closed form", 0.59897, exact_escape(1), 1e-5, "digits quoted");
+    check_sphere_photons(context, result, false);
   };
   return c;
 }
@@ -160,8 +164,9 @@ Case glass_sphere_case() {
          .equation = "the same with A(1.5) = 3.6279: escape .52544",
          .source = "Haskell et al. 1994; transport: .5341"};
   c.refinements = {sphere_refinement(1.5f, exact, {16, 32, 64})};
-  c.check = [exact](CaseContext&, CaseResult& result) {
+  c.check = [exact](CaseContext& context, CaseResult& result) {
     result.absolute("escape, closed form", 0.52544, exact, 2e-5, "digits quoted");
+    check_sphere_photons(context, result, true);
   };
   return c;
 }

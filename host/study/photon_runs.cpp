@@ -6,12 +6,16 @@ namespace turbid::study {
 namespace {
 
 template <class Answer>
-PhotonAnswer with_solver(cl::Session& session, const MediumDescription& description, const SolverSettings& settings, const LightList& lights,
-                         const Surroundings& surroundings, const Answer& answer) {
+PhotonAnswer with_solver(cl::Session& session, const MediumDescription& description, const SolverSettings& settings,
+                         const LightList& lights, const Surroundings& surroundings, const Answer& answer) {
   const MediumVolume medium = voxelise(description);
   Progress progress(Verbosity::quiet);
-  PhotonSolver solver({.session = session, .progress = progress, .settings = settings, .features = scene_features(medium, lights),
-                       .description = description, .surroundings = surroundings});
+  PhotonSolver solver({.session = session,
+                       .progress = progress,
+                       .settings = settings,
+                       .features = scene_features(medium, lights),
+                       .description = description,
+                       .surroundings = surroundings});
   solver.prepare(medium);
   const double started = wall_time();
   LightSolution solution = answer(solver);
@@ -57,7 +61,8 @@ PhotonSource source(int kind, glm::vec3 position, glm::vec3 direction, int regio
   return result;
 }
 
-PhotonAnswer follow(cl::Session& session, const MediumDescription& description, const SolverSettings& settings, const std::vector<PhotonSource>& sources) {
+PhotonAnswer follow(cl::Session& session, const MediumDescription& description, const SolverSettings& settings,
+                    const std::vector<PhotonSource>& sources) {
   return with_solver(session, description, settings, {}, {}, [&](PhotonSolver& solver) {
     PhotonSources all;
     for (const PhotonSource& one : sources) all.add(one, {1, 1, 1});
@@ -66,9 +71,10 @@ PhotonAnswer follow(cl::Session& session, const MediumDescription& description, 
   });
 }
 
-PhotonAnswer follow(cl::Session& session, const MediumDescription& description, const SolverSettings& settings, const LightList& lights,
-                    const Surroundings& surroundings) {
-  return with_solver(session, description, settings, lights, surroundings, [&](PhotonSolver& solver) { return solver.light(lights); });
+PhotonAnswer follow(cl::Session& session, const MediumDescription& description, const SolverSettings& settings,
+                    const LightList& lights, const Surroundings& surroundings) {
+  return with_solver(session, description, settings, lights, surroundings,
+                     [&](PhotonSolver& solver) { return solver.light(lights); });
 }
 
 MediumDescription slab(int n, float voxel, const Material& material) {

@@ -28,7 +28,8 @@ SolverSettings photons(std::int64_t count, std::uint64_t seed = 0, int batches =
 PhotonSource source(int kind, glm::vec3 position, glm::vec3 direction = {0, 0, 1}, int region = 0);
 
 PhotonAnswer follow(cl::Session&, const MediumDescription&, const SolverSettings&, const std::vector<PhotonSource>&);
-PhotonAnswer follow(cl::Session&, const MediumDescription&, const SolverSettings&, const LightList&, const Surroundings& = {});
+PhotonAnswer follow(cl::Session&, const MediumDescription&, const SolverSettings&, const LightList&,
+                    const Surroundings& = {});
 
 /// A domain of 8 x 8 x n voxels of edge `voxel`, open towards -z and +z, periodic else.
 MediumDescription slab(int n, float voxel, const Material&);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light before it is scattered: how it enters, attenuation by Beer and Lambert, and what a point source leaves.
+// Light before it is scattered: how it enters, attenuation by Beer and Lambert.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -126,36 +126,6 @@ TEST(LightEntry, ASpotOrLampThatFallsWhollyOnAMediumBringsAllItsPower) {
       EXPECT_NEAR(e.missed[c] / e.emitted[c], 0, 5e-3);  // the cone's rim cuts texels: one in 30 across, of either sign
     }
   }
-}
-
-TEST(PointSource, InAnInfiniteMediumRaisesTransportsFluence) {
-  // Case 10: w = .9, means over shells of [2,3], [4,5], [6,7] mean free paths, 10 %. First flight plus diffusion; an
-  // eighth of space by mirrors, a quarter of a mean free path per voxel.
-  MediumDescription scene = test::empty_domain(glm::ivec3(64), 0.25f);
-  scene.faces = {FaceBoundary::mirror, FaceBoundary::open,   FaceBoundary::mirror,
-                 FaceBoundary::open,   FaceBoundary::mirror, FaceBoundary::open};
-  test::set_ambient(scene, test::make_material({.sigma_s = glm::vec3(0.9f), .sigma_a = glm::vec3(0.1f)}));
-  const test::Run run = test::run(scene, {test::point_light(glm::vec3(0.01f), glm::vec3(0.125f))});
-  double sum[3] = {0, 0, 0};
-  int count[3] = {0, 0, 0};
-  for (int z = 0; z < 32; ++z) {
-    for (int y = 0; y < 32; ++y) {
-      for (int x = 0; x < 32; ++x) {
-        const double r = 0.25 * glm::length(glm::dvec3(x, y, z) + 0.5);
-        const int shell = r >= 2 && r < 3 ? 0 : r >= 4 && r < 5 ? 1 : r >= 6 && r < 7 ? 2 : -1;
-        if (shell < 0) continue;
-        sum[shell] += run.fluence({x, y, z}) + run.deposit({x, y, z}) / 0.9;  // diffuse plus unscattered
-        ++count[shell];
-      }
-    }
-  }
-  const double expected[3] = {2.196e-2, 4.212e-3, 1.0195e-3};
-  std::string text;
-  for (int shell = 0; shell < 3; ++shell) {
-    text += std::to_string(sum[shell] / count[shell] / expected[shell]) + " ";
-    EXPECT_NEAR(sum[shell] / count[shell] / expected[shell], 1, 0.1) << shell;
-  }
-  RecordProperty("ratios", text);
 }
 
 }  // namespace

@@ -143,7 +143,7 @@ TEST(View, ABodyInThermalEquilibriumWithItsSurroundingsIsInvisible) {
 }
 
 TEST(View, RadianceOverEtaSquaredCountsThePowerThatALensEmits) {
-  // Case 20: a clear Luneburg lens that glows evenly. All light leaves it (nothing is trapped), evenly in all
+  // A clear Luneburg lens that glows evenly. All light leaves it (nothing is trapped), evenly in all
   // directions by symmetry: 4 pi D^2 times the irradiance at the camera is emission times volume.
   for (bool graded : {false, true}) {
     const float radius = 13, emission = 0.2f, distance = 100;

@@ -41,12 +41,21 @@ Lattice::Lattice(cl::Session& session, const DiffusionMedium& diffusion, const L
   energy_ = session.zeros<float>(static_cast<std::size_t>(blocks_) * channels_ * 8);
 }
 
+std::size_t Lattice::device_bytes() const {
+  std::size_t bytes = link_block_.bytes() + neighbours_.bytes();
+  for (const F* buffer : {&collision_, &source_, &injected_, &links_, &populations_, &fluence_, &sums_, &energy_,
+                          &interfaces_[0], &interfaces_[1]}) {
+    bytes += buffer->bytes();
+  }
+  return bytes;
+}
+
 void Lattice::reset() {
   cl::Queue& queue = session_.lattice_queue();
   for (F* buffer : {&source_, &injected_, &fluence_, &populations_, &interfaces_[0], &interfaces_[1]}) {
     session_.fill_zero(queue, *buffer);
   }
-  sweeps_ = 0;
+  sweeps_ = first_sweep_ = 0;
 }
 
 void Lattice::set_source(const std::vector<float>& q) {
@@ -97,7 +106,7 @@ double Lattice::largest_s() const {
 double Lattice::relax(const std::function<void(double)>& progress) {
   double previous = 0, estimate = 1;
   int small = 0;
-  while (sweeps_ < settings_.max_sweeps && blocks_ > 0) {
+  while (sweeps() < settings_.max_sweeps && blocks_ > 0) {
     enqueue_sweeps(kSweepsPerTest);
     const double change = read_change().relative;
     if (change < kRounding) {

@@ -26,7 +26,11 @@ class Lattice {
   void set_source(const std::vector<float>& q);
   /// Enqueues `count` sweeps on the lattice queue and returns at once.
   void enqueue_sweeps(int count) { enqueue_sweeps(count, settings_.inner_iterations); }
-  int sweeps() const { return sweeps_; }
+  /// Since the last reset or resume.
+  int sweeps() const { return sweeps_ - first_sweep_; }
+  /// Counts sweeps from here on; populations stay.
+  void resume() { first_sweep_ = sweeps_; }
+  bool at_rest() const { return sweeps_ == 0; }
 
   struct Change {
     double relative = 0;   ///< summed |change| of the last sweep / summed fluence, worst channel
@@ -36,6 +40,8 @@ class Lattice {
   /// [channel][block][voxel] of the diffusion medium [W/voxel^2].
   std::vector<float> read_fluence();
   LatticeEnergy read_energy();
+  /// Device memory held [bytes].
+  std::size_t device_bytes() const;
 
   /// Sweeps until the estimated error, change * rho / (1 - rho) with rho the ratio of successive changes (numerics section 5),
   /// is below the tolerance. Returns that estimate. `progress(fraction)` may throw to stop.
@@ -52,7 +58,7 @@ class Lattice {
   const DiffusionMedium& diffusion_;
   LatticeSettings settings_;
   LatticeMedium medium_;
-  int channels_ = 3, blocks_ = 0, sweeps_ = 0;
+  int channels_ = 3, blocks_ = 0, sweeps_ = 0, first_sweep_ = 0;
   cl::Program program_;
   cl::Kernel<F, F, I, F, I, F, F, F, F, F, int, int, int, int> sweep_;
   cl::Kernel<F, F, F, I, F, I, F, F, F, int, int, int> balance_;

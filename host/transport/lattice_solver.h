@@ -15,6 +15,7 @@ class LatticeSolver final : public MarchingSolver {
   void prepare_diffusion(const DiffusionMedium&) override;
   void march_all(March&) override;
   DiffuseLight diffuse(const LightSource&) override;
+  std::size_t diffusion_bytes() const override { return lattice_ ? lattice_->device_bytes() : 0; }
 
  private:
   std::optional<Lattice> lattice_;

@@ -63,6 +63,36 @@ TEST(Solvers, SteadyAndLatticeAgreeToTheirTolerance) {
   }
 }
 
+TEST(Solvers, AWarmStartAnswersLikeAColdOneAndKeepsTheBalance) {
+  const EnergyCase c = energy_cases()[1];
+  const MediumVolume medium = voxelise(c.scene);
+  Progress progress(Verbosity::quiet);
+  LightList moved = c.lights;
+  moved[0].direction = glm::normalize(glm::vec3(1, -0.4f, 0.35f));
+  for (const char* name : {"steady", "lattice"}) {
+    SolverSettings settings;
+    settings.solver = name;
+    const auto solver = make_solver({.session = test::session(),
+                                     .progress = progress,
+                                     .settings = settings,
+                                     .features = scene_features(medium, c.lights),
+                                     .description = c.scene,
+                                     .surroundings = {}});
+    solver->prepare(medium);
+    const LightSolution cold = solver->light(moved);
+    const LightSolution first = solver->light(c.lights);
+    solver->set_warm_start(true);
+    const LightSolution same = solver->light(c.lights), warm = solver->light(moved);
+    EXPECT_LE(same.report.iterations, name == std::string("steady") ? 1 : first.report.iterations / 4) << name;
+    EXPECT_LT(warm.report.iterations, cold.report.iterations) << name;
+    EXPECT_LT(relative_difference(warm.volume.fluence, cold.volume.fluence), 3e-4) << name;  // 1e-4 each, in two norms
+    EXPECT_LT(warm.report.energy.imbalance(), 1e-5) << name;
+    EXPECT_LT(same.report.energy.imbalance(), 1e-5) << name;
+    solver->set_warm_start(false);
+    EXPECT_EQ(solver->light(moved).volume.fluence, cold.volume.fluence) << name;
+  }
+}
+
 TEST(Runs, RepeatToTheBit) {
   const std::vector<EnergyMedium> cases = energy_media();
   for (const char* solver : {"steady", "lattice"}) {

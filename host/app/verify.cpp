@@ -40,17 +40,20 @@ std::vector<const Case*> chosen_cases(const VerifyOptions& options) {
   return chosen;
 }
 
-/// A folder gets files named verify.
-std::string report_prefix(const std::string& wanted) {
+/// A folder gets files of that name.
+std::string report_prefix(const std::string& wanted, const std::string& name) {
   const bool folder = !wanted.empty() && (wanted.back() == '/' || std::filesystem::is_directory(wanted));
-  return folder ? (std::filesystem::path(wanted) / "verify").string() : wanted;
+  return folder ? (std::filesystem::path(wanted) / name).string() : wanted;
 }
 
 void verify(const VerifyOptions& options) {
-  if (options.paper) return verify_paper({options, options.device, options.output, options.quick});
+  if (options.paper)
+    return verify_paper({options, options.device,
+                         report_prefix(options.output.empty() ? "out/paper/" : options.output, "paper"),
+                         options.quick});
   if (options.list) return print(options.json ? case_list_json(cases()) : case_list_text(cases()));
   const std::vector<const Case*> chosen = chosen_cases(options);
-  const std::string prefix = report_prefix(options.output);
+  const std::string prefix = report_prefix(options.output, "verify");
   const cl::DeviceChoice choice = cl::choose_device(options.device);
   cl::Session session(choice);
   Progress progress(options.verbosity());
@@ -86,7 +89,7 @@ void add_verify(CLI::App& program, Work& work) {
   command
       .add_option("-o,--output", options->output,
                   "Also write PREFIX.html, PREFIX.json and a CSV file per table; into a folder: DIR/verify.html, ...; "
-                  "with --paper: the folder (default: out/paper)")
+                  "with --paper DIR/paper.html, ... (default: out/paper/)")
       ->type_name("PREFIX");
   add_device_option(command, options->device);
   add_talk_options(command, *options);
@@ -94,7 +97,7 @@ void add_verify(CLI::App& program, Work& work) {
       "Prints for each case its equation, the expected values with their source, what was got, the tolerance and its\n"
       "reason, and observed orders of convergence with 95 % intervals.\n"
       "Exit status: 0 all passed, 1 a case failed, 2 no such case.\n"
-      "Examples:\n  turbid verify 6 luneburg\n  turbid verify --hard\n  turbid verify --paper -o report");
+      "Examples:\n  turbid verify 6 luneburg\n  turbid verify --hard\n  turbid verify --paper -o report/");
   command.callback([options, &work] { work = [options] { verify(*options); }; });
 }
 

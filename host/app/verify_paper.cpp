@@ -11,14 +11,13 @@ namespace turbid::app {
 
 void verify_paper(const PaperOptions& options) {
   const cl::DeviceChoice choice = cl::choose_device(options.device);
-  const std::filesystem::path folder = options.output.empty() ? "out/paper" : options.output;
-  const FolderInUse in_use(folder);
+  const FolderInUse folder(std::filesystem::path(options.prefix).parent_path());
   cl::Session session(choice);
   Progress progress(options.talk.verbosity());
   CaseContext context{session, progress, options.quick};
   const study::PaperStudy study = study::study_paper_scheme(context);
   const Document document = paper_report(study, report_context(command_line(), &choice.device), options.quick);
-  const NamedTexts files = write_document(document, (folder / "paper").string());
+  const NamedTexts files = write_document(document, options.prefix);
   if (options.talk.json) return print(document_json(document));
   if (!options.talk.quiet) print(document_text(document));
   for (const auto& [name, file] : files) print(name + "  " + file + "\n");

@@ -10,10 +10,10 @@ namespace turbid::app {
 struct PaperOptions {
   TalkOptions talk;
   std::string device;
-  std::string output;  ///< folder; empty: out/paper
+  std::string prefix;  ///< of the files written
   bool quick = false;
 };
-/// Writes paper.html, paper.json and a CSV per table into the folder, prints the tables.
+/// Writes PREFIX.html, PREFIX.json and a CSV per table, prints the tables.
 void verify_paper(const PaperOptions&);
 
 }  // namespace turbid::app

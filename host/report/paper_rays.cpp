@@ -13,18 +13,20 @@ namespace turbid {
 Section paper_bending(const std::vector<study::FocusError>& rows, const std::array<double, 3>& refraction) {
   Plot plot{.id = "focus",
             .title = "Focus of a Luneburg lens",
-            .caption = "Rms distance from the focus at which nine parallel rays leave a lens of radius R. Fig. 4 "
-                       "divides the gradient by n once more than Eq. 3 and so traces a medium of index sqrt(2n - 1), "
-                       "which no step is small enough to mend.",
+            .caption =
+                "Rms distance from the focus at which nine parallel rays leave a lens of radius R. Fig. 4 "
+                "divides the gradient by n once more than Eq. 3 and so traces a medium of index sqrt(2n - 1), "
+                "which no step is small enough to mend.",
             .x = {.label = "step", .unit = "R", .log = true},
             .y = {.label = "focus error", .unit = "R", .log = true},
             .slopes = {{.order = 1, .series = 0}, {.order = 2, .series = 2}},
             .lines = {{.at = 0.087, .label = "limit of Fig. 4"}}};
   Table focus{.id = "luneburg", .title = "The same in numbers", .columns = {{"step", "R"}}};
-  Table angle{.id = "refraction",
-              .title = "Light at 30 degrees from index 1 into 1.5",
-              .caption = "Through a smooth rise in steps so fine that only the equations differ.",
-              .columns = {{"scheme"}, {"angle", "deg", 2, NumberStyle::fixed}, {"off by", "deg", 2, NumberStyle::fixed}}};
+  Table angle{
+      .id = "refraction",
+      .title = "Light at 30 degrees from index 1 into 1.5",
+      .caption = "Through a smooth rise in steps so fine that only the equations differ.",
+      .columns = {{"scheme"}, {"angle", "deg", 2, NumberStyle::fixed}, {"off by", "deg", 2, NumberStyle::fixed}}};
   const double snell = std::asin(0.5 / 1.5) * 180 / std::numbers::pi;
   for (std::size_t t = 0; t < study::kTracers.size(); ++t) {
     Series one{.name = study::kTracers[t]};
@@ -45,14 +47,16 @@ Section paper_bending(const std::vector<study::FocusError>& rows, const std::arr
 Section paper_deposits(const std::vector<study::Attenuation>& rows) {
   Plot plot{.id = "beer",
             .title = "What a ray carries",
-            .caption = "Fig. 4 adds the exponentials of its steps, beginning with od = 0, where Eq. 1's integral asks "
-                       "for their product: light grows along the ray, the more the finer the steps.",
+            .caption =
+                "Fig. 4 adds the exponentials of its steps, beginning with od = 0, where Eq. 1's integral asks "
+                "for their product: light grows along the ray, the more the finer the steps.",
             .x = {.label = "depth", .unit = "mfp"},
             .y = {.label = "L_t / L_0", .log = true}};
   Table table{.id = "deposits",
               .title = "Power left behind by a ray that ends in the medium, per power emitted (albedo 1)",
-              .caption = "Leaving L_t itself behind at every step, even with the product, makes the light depend on the "
-                         "step; the scattered part of the loss, P (1 - e^-s) w, adds up to what was emitted.",
+              .caption =
+                  "Leaving L_t itself behind at every step, even with the product, makes the light depend on the "
+                  "step; the scattered part of the loss, P (1 - e^-s) w, adds up to what was emitted.",
               .columns = {{"step", "mfp"}, {"sum of L_t", "", 4}, {"sum of P (1 - e^-s) w", "", 4}}};
   for (const auto& row : rows) {
     plot.series.push_back({.name = line("sum, step %g mfp", row.step), .x = row.depth, .y = row.printed});
@@ -70,10 +74,11 @@ Section paper_deposits(const std::vector<study::Attenuation>& rows) {
 Section paper_directions(const study::Directions& all) {
   Plot plot{.id = "directions",
             .title = "Fluence around a lamp, along the axes and along the diagonals, over the exact one",
-            .caption = "Albedo .9, voxels of half a mean free path, first flight marched, the rest on the lattice. One "
-                       "relaxation time for all moments carries light along the six directions of the lattice too "
-                       "far and starves the diagonals, whatever the resolution; two (TRT) make the lattice's end that "
-                       "of diffusion, the same in every direction.",
+            .caption =
+                "Albedo .9, voxels of half a mean free path, first flight marched, the rest on the lattice. One "
+                "relaxation time for all moments carries light along the six directions of the lattice too "
+                "far and starves the diagonals, whatever the resolution; two (TRT) make the lattice's end that "
+                "of diffusion, the same in every direction.",
             .x = {.label = "distance from the lamp", .unit = "mfp"},
             .y = {.label = "fluence / exact transport"},
             .lines = {{.at = 1, .label = "exact"}}};
@@ -90,14 +95,18 @@ Section paper_directions(const study::Directions& all) {
   const std::array<const char*, 2> names{"one relaxation time", "two (TRT)"};
   Table table{.id = "ray_effects",
               .title = "Error of the fluence between 2 and 6 mean free paths",
-              .columns = {{"collision"}, {"rel-L2 over voxels", "", 3}, {"largest axis / exact", "", 3}, {"smallest diagonal / exact", "", 3}}};
+              .columns = {{"collision"},
+                          {"rel-L2 over voxels", "", 3},
+                          {"largest axis / exact", "", 3},
+                          {"smallest diagonal / exact", "", 3}}};
   for (std::size_t k = 0; k < 2; ++k) {
     plot.series.push_back(over_exact(std::string(names[k]) + ", axis", all.axis_r[k], all.axis[k], false));
     const Series& axis = plot.series.back();
     const double most = *std::max_element(axis.y.begin(), axis.y.end());
     plot.series.push_back(over_exact(std::string(names[k]) + ", diagonal", all.diagonal_r[k], all.diagonal[k], true));
     const Series& diagonal = plot.series.back();
-    table.rows.push_back({{std::string(names[k]), all.error[k], most, *std::min_element(diagonal.y.begin(), diagonal.y.end())}});
+    table.rows.push_back(
+        {{std::string(names[k]), all.error[k], most, *std::min_element(diagonal.y.begin(), diagonal.y.end())}});
   }
   plot.series[0].highlighted = plot.series[1].highlighted = true;
   return {"Ray effects", {plot, table}};

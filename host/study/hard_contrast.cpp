@@ -111,14 +111,14 @@ Case mixtures_case() {
                                  : "numerics section 5: 6 to 8, two more for the estimate's delay");
           // The lattice needs sweeps in the hundreds per factor of ten: one mixture at the milder absorption.
           if (checker || contrast > 100 || absorption < 0.1) continue;
-          const std::vector<float> lattice =
-              solve_lattice(context.session, medium, q, CollisionVariant::trt, 1e-4f);
+          const std::vector<float> lattice = solve_lattice(context.session, medium, q, CollisionVariant::trt, 1e-4f);
           double difference = 0, norm = 0;
           for (std::size_t i = 0; i < q.size(); ++i) {
             difference += std::abs(lattice[i] - answer.fluence[i]);
             norm += answer.fluence[i];
           }
-          result.at_most(std::string("lattice against steady, ") + name, 3e-4, difference / norm, "a relaxation to 1e-4");
+          result.at_most(std::string("lattice against steady, ") + name, 3e-4, difference / norm,
+                         "a relaxation to 1e-4");
           result.at_least(std::string("least / largest fluence, lattice, ") + name, -1e-4, lowest_share(lattice),
                           "numerics section 1: the fluence of TRT is not negative");
         }

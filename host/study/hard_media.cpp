@@ -17,7 +17,7 @@ Material milk(double sigma_t, double albedo, float g = 0) {
 
 /// Reflectance and transmittance of a slab by `steady`, which is returned, against photons.
 HardRun against_photons(CaseContext& context, CaseResult& result, const std::string& name, const HardScene& scene,
-                     double bound, const std::string& reason, std::int64_t photons = 20000) {
+                        double bound, const std::string& reason, std::int64_t photons = 20000) {
   HardRun found = run_both(context, result, name, scene);
   const HardRun exact = run_hard(context, result, name, scene, hard_settings("photon", photons));
   for (const int face : {4, 5})
@@ -38,7 +38,8 @@ Case albedo_case() {
     struct Row {
       double albedo, bound;
     };
-    for (const Row& row : {Row{0, 1e-4}, Row{0.5, 0.03}, Row{0.9, 0.03}, Row{0.999, 0.02}, Row{0.99999, 0.02}, Row{1, 0.02}}) {
+    for (const Row& row :
+         {Row{0, 1e-4}, Row{0.5, 0.03}, Row{0.9, 0.03}, Row{0.999, 0.02}, Row{0.99999, 0.02}, Row{1, 0.02}}) {
       const HardScene scene = lit_slab(16, 0.5f, milk(1, row.albedo));
       const std::string name = "albedo " + short_number(row.albedo);
       const HardRun found = against_photons(context, result, name, scene, row.bound,
@@ -62,17 +63,23 @@ Case thickness_case() {
          .hard = true};
   c.check = [](CaseContext& context, CaseResult& result) {
     for (const double s : {1e-4, 1e-2, 0.1, 1.0, 5.0, 10.0, 100.0}) {
-      const HardScene scene = lit_slab(16, 1, milk(s, 0.99));
+      // Thick ones as a body: its surface is known within a voxel, that of a domain is not.
+      HardScene scene = lit_slab(s < 5 ? 16 : 24, 1, milk(s < 5 ? s : 0, 0.99));
+      if (s >= 5) add_body(scene.medium, make_box({40, 40, 16}, at({4, 4, 12})), milk(s, 0.99));
       const std::string name = "s = " + short_number(s);
       if (s < 5) {
         against_photons(context, result, name, scene, 0.03, "diffusion, share of the light");
         continue;
       }
-      // The source stands in the middle of the first voxel, not a mean free path below the surface.
       const HardRun found = run_both(context, result, name, scene);
-      result.within("R, " + name, s == 5 ? 0.5 : s == 10 ? 0.3 : 0.005, 0.7526 * 1.06, face_share(found.run, 4),
-                    "half-space .7526; numerics section 4 finds .537 at s = 5, .314 at s = 10 without a split source");
-      must_warn(result, name, found, "optically too thick");
+      result.relative("R, half-space, " + name, 0.7526, face_share(found.run, 4), s > 5 ? 0.35 : 0.03,
+                      s > 5 ? "not resolved, which a warning says" : "numerics section 4: .755 at s = 5");
+      if (s > 5) must_warn(result, name, found.warnings, "optically too thick");
+      if (s > 5) continue;
+      const HardRun filled = run_both(context, result, "domain of " + name, lit_slab(16, 1, milk(s, 0.99)));
+      result.within("R, domain of " + name, 0.5, 0.8, face_share(filled.run, 4),
+                    "the source stands mid-voxel, as warned");
+      must_warn(result, "domain of " + name, filled.warnings, "domain's own medium");
     }
   };
   return c;
@@ -83,18 +90,14 @@ Case phase_case() {
          .name = "hard-phase",
          .title = "Mean cosines from -.9 to .99, transport albedo .999, slab of 5 transport mean free paths",
          .equation = "R and T of photons; sigma_s (1 - g) after a first flight with f = max(g, 0)^2",
-         .source = "Monte Carlo; a source without first moment misses up to .13 of the light",
+         .source = "Monte Carlo; numerics section 4: within 5 % from 1 to 11 transport mean free paths",
          .hard = true};
   c.check = [](CaseContext& context, CaseResult& result) {
     for (const float g : {-0.9f, -0.3f, 0.0f, 0.3f, 0.9f, 0.99f}) {
       const double sigma_s = 1 / (1 - g);
       const std::string name = "g = " + short_number(g);
       const HardScene scene = lit_slab(16, 5.0f / 16, milk(sigma_s + 1e-3, sigma_s / (sigma_s + 1e-3), g));
-      const bool strong = std::abs(g) > 0.4f;
-      const HardRun found = against_photons(context, result, name, scene, strong ? 0.13 : 0.05,
-                                            strong ? "the first flight's direction is forgotten, which a warning says"
-                                                   : "similarity, share of the light");
-      if (strong) must_warn(result, name, found, "direction of the first flight");
+      against_photons(context, result, name, scene, 0.03, "diffusion, share of the light");
     }
   };
   return c;

@@ -60,9 +60,10 @@ HardRun run_both(CaseContext& context, CaseResult& result, const std::string& na
   return run_hard(context, result, name, scene, hard_settings("steady"));
 }
 
-void must_warn(CaseResult& result, const std::string& name, const HardRun& hard, const std::string& part) {
+void must_warn(CaseResult& result, const std::string& name, const std::vector<std::string>& warnings,
+               const std::string& part) {
   double found = 0;
-  for (const std::string& sentence : hard.warnings)
+  for (const std::string& sentence : warnings)
     if (sentence.find(part) != std::string::npos) {
       ++found;
       result.notes.push_back("warns, " + name + ": " + sentence);

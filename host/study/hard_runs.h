@@ -27,8 +27,8 @@ HardRun run_hard(CaseContext&, CaseResult&, const std::string& name, const HardS
 /// By "steady" and, as a check of its promises alone, by "lattice": returns the former.
 HardRun run_both(CaseContext&, CaseResult&, const std::string& name, const HardScene&);
 
-/// Checks that one of the warnings holds `part`, and prints it.
-void must_warn(CaseResult&, const std::string& name, const HardRun&, const std::string& part);
+/// Checks that one of a run's warnings holds `part`, and prints it.
+void must_warn(CaseResult&, const std::string& name, const std::vector<std::string>& warnings, const std::string& part);
 
 /// Power that met the medium, colour 0 [W]; the shares below are of it.
 double entered(const Run&);

@@ -93,8 +93,8 @@ Case nothing_case() {
         const EnergyBalance& e = found.run.energy();
         const auto& fluence = found.run.solution.volume.fluence;
         const std::string of = ", " + name + ", " + solver;
-        result.at_most("largest fluence" + of, 0, fluence.empty() ? 0 : *std::max_element(fluence.begin(), fluence.end()),
-                       "nothing scatters");
+        result.at_most("largest fluence" + of, 0,
+                       fluence.empty() ? 0 : *std::max_element(fluence.begin(), fluence.end()), "nothing scatters");
         result.absolute("missed + reflected + escaped + in flight" + of, 1,
                         (e.missed.x + e.reflected.x + e.escaped.x + e.in_flight.x) / e.emitted.x, 1e-5,
                         "nothing absorbs");

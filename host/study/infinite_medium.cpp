@@ -21,8 +21,8 @@ double transport_attenuation(double albedo) {
 double point_source_fluence(double albedo, double r) {
   const double pi = std::numbers::pi, k = transport_attenuation(albedo), k2 = k * k;
   double sum = 2 * k2 * (1 - k2) / (albedo * (k2 - 1 + albedo)) * std::exp(-k * r);
-  // With t = 1 / mu - 1 from 0 on, dmu / mu^2 = dt: the integrand falls as e^-rt. Simpson's rule in t = v^2, which takes
-  // out the steep begin near mu = 1.
+  // With t = 1 / mu - 1 from 0 on, dmu / mu^2 = dt: the integrand falls as e^-rt. Simpson's rule in t = v^2, which
+  // takes out the steep begin near mu = 1.
   const double end = std::sqrt(45 / r);
   constexpr int kParts = 2000;
   for (int i = 0; i <= kParts; ++i) {

@@ -8,8 +8,8 @@ namespace turbid::study {
 /// `albedo` in (0, 1).
 double transport_attenuation(double albedo);
 
-/// Fluence [1 / mfp^2] at `r` mean free paths from a source of 1 W, what never scattered included (Case, de Hoffmann and
-/// Placzek 1953).
+/// Fluence [1 / mfp^2] at `r` mean free paths from a source of 1 W, what never scattered included (Case, de Hoffmann
+/// and Placzek 1953).
 double point_source_fluence(double albedo, double r);
 
 }  // namespace turbid::study

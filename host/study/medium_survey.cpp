@@ -50,17 +50,13 @@ class Histogram {
   std::uint64_t count_ = 0;
 };
 
-/// Of larger magnitude; of two equal ones the positive, whatever the order.
-float stronger(float a, float b) {
-  return std::fabs(a) == std::fabs(b) ? std::max(a, b) : std::fabs(a) > std::fabs(b) ? a : b;
-}
-
 /// What one thread has seen.
 struct Part {
   Histogram thickness;
   std::size_t active_blocks = 0, active_voxels = 0;
   std::vector<float> index_step;  ///< per region
-  float first_flight = 0, strongest_g = 0;
+  float first_flight = 0, first_flight_ambient = 0;
+  std::vector<char> seen;  ///< per region
 };
 
 glm::ivec3 voxel_at(int i) {
@@ -71,6 +67,7 @@ class BlockSurvey {
  public:
   BlockSurvey(const MediumVolume& medium, Part& part) : medium_(medium), part_(part) {
     part_.index_step.resize(static_cast<std::size_t>(medium.region_count()));
+    part_.seen.resize(part_.index_step.size());
   }
 
   void look(glm::ivec3 block) {
@@ -80,6 +77,7 @@ class BlockSurvey {
     for (int r = 0; r < medium_.region_count(); ++r) {
       if (std::find(owner_.begin(), owner_.end(), r) == owner_.end()) continue;
       const Region& region = medium_.region(r);
+      part_.seen[static_cast<std::size_t>(r)] = 1;
       if (region.participates()) {
         active = true;
         look_at_coefficients(r);
@@ -104,7 +102,7 @@ class BlockSurvey {
       for (int c = 0; c < 3; ++c) {
         part_.thickness.add(h * sigma_t[c]);
         part_.first_flight = std::max(part_.first_flight, h * first[c]);
-        if (k.sigma_s[c] > 0) part_.strongest_g = stronger(part_.strongest_g, k.g);
+        if (r == 0) part_.first_flight_ambient = std::max(part_.first_flight_ambient, h * first[c]);
       }
     }
   }
@@ -146,6 +144,7 @@ MediumSurvey survey_medium(const MediumVolume& medium) {
   survey.voxels = survey.blocks * kVoxels;
   Part all;
   all.index_step.resize(static_cast<std::size_t>(medium.region_count()));
+  all.seen.resize(all.index_step.size());
   std::mutex mutex;
   parallel_ranges(static_cast<int>(survey.blocks), [&](int begin, int end) {
     Part part;
@@ -156,14 +155,18 @@ MediumSurvey survey_medium(const MediumVolume& medium) {
     all.active_voxels += part.active_voxels;
     all.thickness.add(part.thickness);
     all.first_flight = std::max(all.first_flight, part.first_flight);
-    all.strongest_g = stronger(all.strongest_g, part.strongest_g);
+    all.first_flight_ambient = std::max(all.first_flight_ambient, part.first_flight_ambient);
+    for (std::size_t r = 0; r < part.seen.size(); ++r) all.seen[r] |= part.seen[r];
     for (std::size_t r = 0; r < part.index_step.size(); ++r)
       all.index_step[r] = std::max(all.index_step[r], part.index_step[r]);
   });
   survey.active_blocks = all.active_blocks;
   survey.active_voxels = all.active_voxels;
   survey.first_flight_max = all.first_flight;
-  survey.strongest_g = all.strongest_g;
+  survey.first_flight_ambient = all.first_flight_ambient;
+  for (int r = 1; r < medium.region_count(); ++r)
+    if (medium.region(r).participates() && !all.seen[static_cast<std::size_t>(r)])
+      survey.unseen.push_back(medium.region(r).name);
   if (!all.thickness.empty()) {
     survey.thickness_min = all.thickness.lowest;
     survey.thickness_median = all.thickness.median();

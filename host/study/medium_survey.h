@@ -18,9 +18,10 @@ struct MediumSurvey {
   float thickness_min = 0;             ///< sigma_t * voxel size over active voxels and colours [-]
   float thickness_median = 0, thickness_max = 0;
   float first_flight_max = 0;      ///< the largest with the forward share of scattering set aside, as the march sees it [-]
-  float strongest_g = 0;           ///< mean cosine of largest magnitude where something scatters [-]
+  float first_flight_ambient = 0;  ///< of it, in the domain's own medium [-]
   float index_step = 0;            ///< largest |difference of eta| between neighbours in varying indices [-]
   std::string index_step_region;   ///< where that is
+  std::vector<std::string> unseen;  ///< bodies that would take part but in which no voxel's centre lies
   std::uint64_t memory_bytes = 0;  ///< rough need of a run, host and device together
 };
 

@@ -208,9 +208,13 @@ std::vector<Cost> cost(CaseContext& context) {
       settings.tolerance = 1e-6f;
       settings.max_iterations = row.steady_iterations;
       SteadySolve solve(context.session, medium, settings);
-      const double started = wall_time();
-      const SteadyResult found = solve.solve(q);
-      row.steady_seconds = wall_time() - started;
+      SteadyResult found = solve.solve(q);
+      row.steady_seconds = 1e9;
+      for (int repeat = 0; repeat < 3; ++repeat) {
+        const double started = wall_time();
+        found = solve.solve(q);
+        row.steady_seconds = std::min(row.steady_seconds, wall_time() - started);
+      }
       if (relative_l2(found.u, exact) < 1e-4) break;
     }
     all.push_back(row);

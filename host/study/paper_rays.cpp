@@ -12,8 +12,12 @@ namespace {
 struct Vec {
   double x, y;
 };
-Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y}; }
-Vec operator*(double k, Vec a) { return {k * a.x, k * a.y}; }
+Vec operator+(Vec a, Vec b) {
+  return {a.x + b.x, a.y + b.y};
+}
+Vec operator*(double k, Vec a) {
+  return {k * a.x, k * a.y};
+}
 
 struct Index {
   std::function<double(Vec)> eta;
@@ -31,9 +35,8 @@ Ray step(const Index& index, Ray ray, double delta, int tracer) {
     return {ray.x + (delta / eta) * ray.v, ray.v + delta * gradient};
   if (tracer == 1)  // x = x + v / n * delta; v = v + delta * grad_n / n
     return {ray.x + (delta / eta) * ray.v, ray.v + (delta / eta) * gradient};
-  const double dtau = delta / eta;
-  const Vec half = ray.v + (0.5 * dtau * eta) * gradient, x = ray.x + dtau * half;
-  return {x, half + (0.5 * dtau * index.eta(x)) * index.gradient(x)};
+  const Vec half = ray.v + (0.5 * delta * eta) * gradient, x = ray.x + delta * half;  // in tau, dtau = ds / n
+  return {x, half + (0.5 * delta * index.eta(x)) * index.gradient(x)};
 }
 
 /// Rays parallel to x into a lens of radius 1 meet at (1, 0).
@@ -53,13 +56,13 @@ double focus_error(double delta, int tracer) {
       last = ray;
       ray = step(lens, ray, delta, tracer);
     } while (outside(ray.x) < 0 || ray.x.x < -0.5);
-    // Where the chord of the last step leaves the lens.
+    // The last step is shortened so that it ends on the lens.
     double low = 0, high = 1;
     for (int k = 0; k < 60; ++k) {
       const double t = 0.5 * (low + high);
-      (outside((1 - t) * last.x + t * ray.x) < 0 ? low : high) = t;
+      (outside(step(lens, last, t * delta, tracer).x) < 0 ? low : high) = t;
     }
-    const Vec end = (1 - low) * last.x + low * ray.x;
+    const Vec end = step(lens, last, low * delta, tracer).x;
     squares += (end.x - 1) * (end.x - 1) + end.y * end.y;
   }
   return std::sqrt(squares / kRays);
@@ -80,7 +83,9 @@ std::vector<FocusError> luneburg_focus() {
 std::array<double, 3> refraction_at_30() {
   // A rise as a tanh over one length unit, crossed in steps a thousand times finer: only the equations differ.
   const Index rise{[](Vec p) { return 1.25 + 0.25 * std::tanh(p.x); },
-                   [](Vec p) { return Vec{0.25 / std::pow(std::cosh(p.x), 2), 0}; }};
+                   [](Vec p) {
+                     return Vec{0.25 / std::pow(std::cosh(p.x), 2), 0};
+                   }};
   std::array<double, 3> degrees{};
   for (int tracer = 0; tracer < 3; ++tracer) {
     Ray ray{{-10, 0}, {std::cos(std::numbers::pi / 6), std::sin(std::numbers::pi / 6)}};

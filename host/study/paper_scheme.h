@@ -30,7 +30,8 @@ struct ClosedBox {
 };
 ClosedBox closed_box();
 
-/// How far from its own end (rel-L2 of the fluence) an iteration is when a test stops it, slab 64 mean free paths thick.
+/// How far from its own end (rel-L2 of the fluence) an iteration is when a test stops it, slab 64 mean free paths
+/// thick.
 struct Stopping {
   double albedo = 0;
   int paper_sweeps = 0, estimate_sweeps = 0, steady_iterations = 0;
@@ -49,8 +50,8 @@ std::vector<Cost> cost(CaseContext&);
 /// Rays of three schemes: Eqs. 2 and 3, the pseudo-code of Fig. 4, kick-drift-kick.
 inline constexpr std::array<const char*, 3> kTracers{"Eqs. 2-3", "Fig. 4", "kick-drift-kick"};
 struct FocusError {
-  double step = 0;               ///< [radii]
-  std::array<double, 3> rms{};   ///< distance from the focus of a Luneburg lens where rays leave it [radii]
+  double step = 0;              ///< [radii]
+  std::array<double, 3> rms{};  ///< distance from the focus of a Luneburg lens where rays leave it [radii]
 };
 std::vector<FocusError> luneburg_focus();
 /// Angle of refraction of light that comes at 30 degrees from index 1 into 1.5 through a smooth rise [degrees].
@@ -58,10 +59,10 @@ std::array<double, 3> refraction_at_30();
 
 /// "od += exp(-delta sigma)" against the product of Eq. 1's exponentials, and what is left behind.
 struct Attenuation {
-  double step = 0;                      ///< [mean free paths]
-  std::vector<double> depth, printed;   ///< L_t / L_0 of Fig. 4 over depth [mean free paths]
-  double deposited_printed = 0;         ///< sum of the L_t that Eq. 1's product leaves behind, per emitted power
-  double deposited = 0;                 ///< sum of P (1 - e^-s) w: the engine's
+  double step = 0;                     ///< [mean free paths]
+  std::vector<double> depth, printed;  ///< L_t / L_0 of Fig. 4 over depth [mean free paths]
+  double deposited_printed = 0;        ///< sum of the L_t that Eq. 1's product leaves behind, per emitted power
+  double deposited = 0;                ///< sum of P (1 - e^-s) w: the engine's
 };
 std::vector<Attenuation> attenuation();
 
@@ -69,7 +70,7 @@ std::vector<Attenuation> attenuation();
 struct Directions {
   /// Distance [mfp] and fluence [1 / mfp^2] with one relaxation time (trapezoid) and with two (TRT).
   std::array<std::vector<double>, 2> axis_r, axis, diagonal_r, diagonal;
-  std::array<double, 2> error{};                                         ///< rel-L2 over voxels from 2 to 6 mfp
+  std::array<double, 2> error{};  ///< rel-L2 over voxels from 2 to 6 mfp
 };
 Directions point_source_directions(CaseContext&);
 

@@ -9,7 +9,8 @@
 
 namespace turbid {
 
-/// Light that was cut off before it came to an end; a solve that stopped short of its tolerance.
+/// Light that was cut off before it came to an end; a solve that stopped short of its tolerance; a colour too faint
+/// beside another.
 std::vector<std::string> run_warnings(const SolverReport&, const SolverSettings&);
 
 }  // namespace turbid

@@ -39,6 +39,7 @@ DeviceMedium upload_medium(cl::Session&, const MediumVolume&, const SceneFeature
 /// First-flight coefficients of forward scattering: the delta-Eddington share f = g^2 counts as not scattered
 /// (numerics section 4); the rest scatters with g* = g / (1 + g). Backward scattering has no forward peak to set aside, and
 /// g* would leave (-1, 1): f = 0.
+inline float scaled_g(float g) { return g > 0.0f ? g / (1.0f + g) : g; }
 inline glm::vec3 delta_scaled(glm::vec3 sigma_s, float g) { return sigma_s * (g > 0.0f ? 1.0f - g * g : 1.0f); }
 
 }  // namespace turbid

@@ -57,7 +57,7 @@ void fill_block(DiffusionMedium& out, const MediumVolume& medium, int block, con
       index = values[v];
     }
     out.eta_squared[at] = index * index;
-    if (!out.g_star.empty()) out.g_star[at] = k.g / (1.0f + k.g);
+    if (!out.g_star.empty()) out.g_star[at] = scaled_g(k.g);
     for (int c = 0; c < out.channels; ++c) {
       const std::size_t i = out.index(c, block, v);
       const int colour = first_colour + c;

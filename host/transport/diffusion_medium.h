@@ -46,7 +46,7 @@ struct DiffusionMedium {
   std::vector<std::int16_t> region;      ///< [block][voxel]; -1: not active
   std::vector<float> hat_volume;         ///< [block][voxel]: integral of the voxel's trilinear weight over its region [voxels]
   std::vector<float> eta_squared;        ///< [block][voxel]
-  std::vector<float> g_star;             ///< [block][voxel]: g / (1 + g), what delta-Eddington leaves; empty: all 0
+  std::vector<float> g_star;             ///< [block][voxel]: scaled_g(g), what delta-Eddington leaves; empty: all 0
   std::vector<float> s, s_a, emission;   ///< [channel][block][voxel]; s floored for voids; emission [W/voxel]
   std::vector<BoundaryFace> boundary;
   std::vector<JumpFace> jumps;

@@ -4,6 +4,8 @@
 #include "host/transport/lattice.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace turbid {
 namespace {
@@ -85,6 +87,8 @@ Lattice::Change Lattice::read_change() {
       change += sums[2 * (static_cast<std::size_t>(c) * blocks_ + block)];
       total += sums[2 * (static_cast<std::size_t>(c) * blocks_ + block) + 1];
     }
+    // A lattice that has overflowed must not look like one that has come to rest.
+    if (!std::isfinite(change) || !std::isfinite(total)) return {std::numeric_limits<double>::quiet_NaN()};
     if (total > 0) result.relative = std::max(result.relative, change / total);
   }
   return result;

@@ -2,6 +2,7 @@
 // Adds up the tiles' copies of each node in a fixed order.
 #include "host/transport/light_source.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace turbid {
@@ -115,6 +116,16 @@ LightSource gather_source(const std::vector<std::int64_t>& deposit, const std::v
   for (int c = 0; c < channels; ++c) {
     for (std::size_t i = 0; i < stride; ++i) {
       const std::size_t at = c * stride + i;
+      // A point outside the surface, in thick voxels, would take more from its voxel than it brought.
+      const double short_of = std::min(own[at] + foreign[at], 0.0);
+      for (int face = 0; face < 6 && short_of < 0; ++face) {
+        const BoundaryFace* out = boundary.find(i, face);
+        if (!out) continue;
+        source.left.add(*out, c, short_of);
+        source.deposited[c] += short_of;
+        foreign[at] -= short_of;
+        break;
+      }
       source.deposited[c] += own[at] + foreign[at];
       source.density[at] = static_cast<float>(own[at] / medium.hat_volume[i]);
       foreign[at] += own[at];

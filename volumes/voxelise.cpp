@@ -51,8 +51,8 @@ void require_consistent(const MediumDescription& scene) {
 
 }  // namespace
 
-// As region_with_room in kernels/lib/medium.h decides for points: the last body that holds a voxel's centre, or in the gap
-// between two that touch the later one.
+// As region_with_room in kernels/lib/medium.h decides for points: the last body that holds a voxel's centre, or in the
+// gap between two that touch the later one.
 openvdb::Int32Grid::Ptr owner_of_voxels(const MediumVolume::Grids& medium) {
   return grid_from_blocks<openvdb::Int32Grid>(medium.frame, 0, [&](glm::ivec3 block) {
     BlockContent<openvdb::Int32Grid> content;

@@ -45,8 +45,8 @@ bool all_fit(const std::vector<double>& extents, double voxel_size) {
   return std::all_of(extents.begin(), extents.end(), [&](double e) { return whole_blocks(e, voxel_size).has_value(); });
 }
 
-/// Resolutions at which all extents are whole blocks: two below so many blocks along the first one, and three from there
-/// on; empty if there are none.
+/// Resolutions at which all extents are whole blocks: two below so many blocks along the first one, and three from
+/// there on; empty if there are none.
 std::string fitting_resolutions(const std::vector<double>& extents, double longest, double blocks_wanted) {
   const double first = extents.front() / kBlockEdge;  // voxel size at one block
   std::vector<std::string> below, above;
@@ -69,11 +69,12 @@ double fit_exact_axes(const std::vector<double>& extents, double longest, double
   for (double blocks = start; blocks <= std::max(1.25 * start, start + 1); ++blocks)
     if (all_fit(extents, first / blocks)) return first / blocks;
 
-  const std::string rule = "mirror and periodic axes keep their exact extent, which must be a whole number of 8-voxel blocks";
+  const std::string rule =
+      "mirror and periodic axes keep their exact extent, which must be a whole number of 8-voxel blocks";
   const std::string list = fitting_resolutions(extents, longest, start);
   if (list.empty())
-    throw InputError(rule +
-                     ", but no voxel size divides them all: change min or max so that these extents have a simple ratio");
+    throw InputError(
+        rule + ", but no voxel size divides them all: change min or max so that these extents have a simple ratio");
   throw InputError(rule + ": resolutions that work are " + list);
 }
 

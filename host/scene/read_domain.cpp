@@ -106,8 +106,9 @@ void tell_if_widened(Reading& reading, const DomainSpec& spec, const FrameReques
   if (!wider || !(!spec.ambient.empty() || cuts_elsewhere)) return;
   const std::string fits = fitting_resolutions(request, medium.frame.voxel_size);
   reading.scene.warnings.push_back(
-      place_of(spec.table->source()) + ": [domain] from " + box_text(asked) + " is no whole number of 8-voxel blocks: it became " +
-      box_text(used) + ", all filled with " + (spec.ambient.empty() ? "the objects that reach beyond it" : "\"" + spec.ambient + "\"") +
+      place_of(spec.table->source()) + ": [domain] from " + box_text(asked) +
+      " is no whole number of 8-voxel blocks: it became " + box_text(used) + ", all filled with " +
+      (spec.ambient.empty() ? "the objects that reach beyond it" : "\"" + spec.ambient + "\"") +
       (fits.empty() ? "; no resolution fits all three sides" : "; resolutions that fit exactly are " + fits));
 }
 

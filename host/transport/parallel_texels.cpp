@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texels of parallel light, clipped in the map's own plane: a plane's points are linear in the texel's coordinates, so that
-// each face of the domain is a straight line there.
+// Texels of parallel light, clipped in the map's own plane: a plane's points are linear in the texel's coordinates, so
+// that each face of the domain is a straight line there.
 #include "host/transport/parallel_texels.h"
 
 #include <algorithm>
@@ -12,10 +12,12 @@ namespace {
 
 constexpr double kLeastShare = 1e-9;  // a smaller part of a texel carries nothing worth a ray
 constexpr double kLeastCosine = 1e-4;
-constexpr double kSlack = 0.01;       // hits so far outside the domain are still in it [voxels]
-constexpr double kFlat = 0.1;         // how far neighbouring hits may lie off a flat surface [texels]
+constexpr double kSlack = 0.01;  // hits so far outside the domain are still in it [voxels]
+constexpr double kFlat = 0.1;    // how far neighbouring hits may lie off a flat surface [texels]
 
-bool closed(const Faces& faces, int face) { return faces[static_cast<std::size_t>(face)] != FaceBoundary::open; }
+bool closed(const Faces& faces, int face) {
+  return faces[static_cast<std::size_t>(face)] != FaceBoundary::open;
+}
 
 /// Convex polygon of few corners.
 struct Polygon {
@@ -62,7 +64,9 @@ class ParallelMap {
   glm::dvec3 direction() const { return direction_; }
   double texel_edge() const { return edge_; }
   PlaneMap on_plane(glm::dvec3 point, glm::dvec3 normal) const {
-    const auto along = [&](glm::dvec3 p) { return p - glm::dot(normal, p) / glm::dot(normal, direction_) * direction_; };
+    const auto along = [&](glm::dvec3 p) {
+      return p - glm::dot(normal, p) / glm::dot(normal, direction_) * direction_;
+    };
     return {point + along(first_ - point), along(column_), along(row_)};
   }
   glm::dvec2 coordinates(glm::dvec3 point) const {
@@ -83,7 +87,8 @@ struct Part {
 /// The part of the texel whose least corner is q that a plane shows within the wanted faces of the domain.
 Part part_within(const PlaneMap& plane, glm::dvec2 q, const GridFrame& frame, const std::array<bool, 6>& wanted) {
   Polygon polygon;
-  for (const glm::dvec2 corner : {q, q + glm::dvec2(1, 0), q + glm::dvec2(1, 1), q + glm::dvec2(0, 1)}) polygon.add(corner);
+  for (const glm::dvec2 corner : {q, q + glm::dvec2(1, 0), q + glm::dvec2(1, 1), q + glm::dvec2(0, 1)})
+    polygon.add(corner);
   for (int face = 0; face < 6; ++face) {
     if (!wanted[static_cast<std::size_t>(face)]) continue;
     const int axis = face / 2;
@@ -168,7 +173,8 @@ class BodyTexels {
   bool beyond_closed_face(glm::dvec3 p) const {
     for (int face = 0; face < 6; ++face) {
       const int axis = face / 2;
-      if (closed(faces_, face) && (face % 2 ? p[axis] > frame_.upper()[axis] : p[axis] < frame_.origin[axis])) return true;
+      if (closed(faces_, face) && (face % 2 ? p[axis] > frame_.upper()[axis] : p[axis] < frame_.origin[axis]))
+        return true;
     }
     return false;
   }
@@ -207,7 +213,8 @@ double lit_area(glm::vec3 direction, const GridFrame& frame, const Faces& faces)
   return sum;
 }
 
-std::vector<FacePart> parts_on_faces(const RasterView& view, glm::vec3 direction, const GridFrame& frame, const Faces& faces) {
+std::vector<FacePart> parts_on_faces(const RasterView& view, glm::vec3 direction, const GridFrame& frame,
+                                     const Faces& faces) {
   const ParallelMap map(view, direction);
   std::vector<FacePart> result;
   for (int face = 0; face < 6; ++face) {

@@ -76,7 +76,7 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
         continue;
       }
       if (path->steps_left == 0) {
-        store_ray(&sinks, path, &path->ray, path->power, rays + path->index);
+        store_ray(&sinks, path, &path->ray, path->place.room, path->power, rays + path->index);
         end_path(path, &sinks, &p, none());
         continue;
       }

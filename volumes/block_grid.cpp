@@ -2,6 +2,7 @@
 // Numbers the active blocks of a domain, x fastest, and finds the neighbours over their six faces.
 #include "volumes/block_grid.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace turbid {
@@ -20,14 +21,21 @@ BlockGrid::BlockGrid(glm::ivec3 blocks, int edge, const std::function<bool(glm::
   if (blocks.x < 0 || blocks.y < 0 || blocks.z < 0 || edge < 1)
     throw std::invalid_argument("BlockGrid: empty or negative size");
   index_.assign(static_cast<std::size_t>(blocks.x) * blocks.y * blocks.z, -1);
-  glm::ivec3 at;
-  for (at.z = 0; at.z < blocks.z; ++at.z)
-    for (at.y = 0; at.y < blocks.y; ++at.y)
-      for (at.x = 0; at.x < blocks.x; ++at.x)
-        if (active(at)) {
-          index_[slot(at, blocks)] = count();
-          coordinates_.push_back(at);
-        }
+  int levels = 0;
+  while ((1 << levels) < std::max({blocks.x, blocks.y, blocks.z})) ++levels;
+  auto visit = [&](auto&& self, glm::ivec3 at, int size) -> void {
+    if (at.x >= blocks.x || at.y >= blocks.y || at.z >= blocks.z) return;
+    if (size == 1) {
+      if (!active(at)) return;
+      index_[slot(at, blocks)] = count();
+      coordinates_.push_back(at);
+      return;
+    }
+    const int half = size / 2;
+    for (int octant = 0; octant < 8; ++octant)
+      self(self, at + half * glm::ivec3(octant & 1, octant >> 1 & 1, octant >> 2), half);
+  };
+  visit(visit, glm::ivec3(0), 1 << levels);
 
   neighbours_.resize(coordinates_.size());
   for (int block = 0; block < count(); ++block)

@@ -23,15 +23,19 @@ const std::vector<FieldKernel>& field_kernels() {
   static const std::vector<FieldKernel> table{
       {"sweep", "source", 50, "inner", {"populations", "fluence"},
        "per voxel, colour and inner step: 5 sums of populations, 3 for phi', 3 x 14 for even and odd parts"},
+      {"step_in_place", "source", 45, nullptr, {"slots"}, "per place: 5 sums of populations, 2 for phi', 3 x 12 for even and odd parts"},
+      {"exchange", "lost", 6, nullptr, {}, "per face and colour: two weighted sums of two"},
       {"balance", "source", 64, nullptr, {}, "one lattice step, and 14 for sums of absorbed and escaped power"},
-      {"smooth", "b", 14, "sweeps", {}, "per voxel, colour and sweep: six products and sums, the scaling, the choice"},
+      {"smooth_down", "b", 13, "sweeps", {}, "per voxel, colour and sweep: six products and sums, the scaling"},
+      {"smooth_up", "b", 13, "sweeps", {}, "per voxel, colour and sweep: six products and sums, the scaling"},
+      {"coarse_cycle", "b", 48, nullptr, {"b", "x", "y"}, "per voxel: four sweeps of 13 less the halves that start from zero"},
       {"restrict_residual", "b", 22, nullptr, {}, "A x (20), its difference from b, the sum into the coarse voxel"},
-      {"prolong", "x", 1, nullptr, {"x"}, "one addition per voxel"},
       {"apply", "x", 22, nullptr, {}, "A x (20) and its product with x, summed"},
       {"advance_solution", "x", 5, nullptr, {"x", "r"}, "two scaled additions, one sum"},
       {"true_residual", "x", 22, nullptr, {}, "A x (20), its difference from b, one sum"},
       {"dot_product", "u", 2, nullptr, {}, "one product, one sum"},
       {"next_direction", "p", 2, nullptr, {"p"}, "one product, one sum"},
+      {"scale", "x", 1, nullptr, {"x"}, "one product"},
   };
   return table;
 }

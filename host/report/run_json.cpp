@@ -87,7 +87,8 @@ std::string report_json(const RunReport& r) {
               {"iterations", s.iterations},
               {"error_estimate", s.error_estimate},
               {"active_blocks", s.active_blocks},
-              {"active_voxels", s.active_voxels}}},
+              {"active_voxels", s.active_voxels},
+              {"diffusion_bytes", s.diffusion_bytes}}},
             {"energy", energy_part(s.energy, r.allowed_imbalance)}};
   json["device"]["chosen_because"] = r.device.reason;
   if (r.exposure) {

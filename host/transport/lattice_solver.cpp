@@ -7,11 +7,16 @@
 namespace turbid {
 
 void LatticeSolver::prepare_diffusion(const DiffusionMedium& medium) {
-  lattice_.emplace(context_.session, medium, context_.settings.lattice);
+  lattice_ = make_lattice(context_.session, medium, context_.settings.lattice);
 }
 
 void LatticeSolver::march_all(March& march) {
+  // A warm start keeps the last answer, which sweeps with an unfinished source would spoil.
   if (!lattice_) return MarchingSolver::march_all(march);
+  if (warm_start() && !lattice_->at_rest()) {
+    lattice_->resume();
+    return MarchingSolver::march_all(march);
+  }
   lattice_->reset();
   while (march.rays_left() > 0) {
     march.enqueue_batch();

@@ -110,6 +110,7 @@ LightSolution MarchingSolver::light(const LightList& lights) {
   report.error_estimate = diffuse_light.error_estimate;
   report.active_blocks = diffusion.blocks.count();
   report.active_voxels = diffusion.active_voxels;
+  report.diffusion_bytes = diffusion_bytes();
   EnergyBalance& energy = report.energy;
   energy.emitted = rays.emitted + source.emitted;
   energy.missed = rays.missed;

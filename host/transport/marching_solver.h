@@ -40,6 +40,8 @@ class MarchingSolver : public TransportSolver {
   /// Runs batches until no ray is left; a solver may relax what is there already meanwhile.
   virtual void march_all(March&);
   virtual DiffuseLight diffuse(const LightSource&) = 0;
+  /// Device memory of what prepare_diffusion made [bytes].
+  virtual std::size_t diffusion_bytes() const = 0;
 
   /// Share of the rays that have ended.
   double march_progress(const March&) const;

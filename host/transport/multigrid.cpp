@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds the operators of all levels on the host, one channel after the other.
+// Builds the operators of all levels on the host, each channel by itself.
 #include "host/transport/multigrid.h"
 
 #include <algorithm>
 #include <array>
+
+#include "host/base/parallel.h"
+#include "kernels/shared/lattice_params.h"
 
 namespace turbid {
 namespace {
@@ -114,13 +117,15 @@ MultigridLevel empty_level(const BlockGrid& blocks, int channels) {
 }
 
 void store(MultigridLevel& level, const Operator& from, int channel) {
-  for (int axis = 0; axis < 3; ++axis) {
-    std::copy(from.t[axis].begin(), from.t[axis].end(), level.conductance.begin() + (3 * channel + axis) * level.stride());
-  }
+  const auto& place = packed_places();
   float* loss = level.loss.data() + channel * level.stride();
+  float* conductance = level.conductance.data() + 3 * channel * level.stride();
   for (std::size_t i = 0; i < from.absorption.size(); ++i) {
-    loss[i] = from.absorption[i];
-    for (const auto& face : from.boundary) loss[i] += face[i];
+    const std::size_t to = i - i % kVoxels + place[i % kVoxels];
+    for (int axis = 0; axis < 3; ++axis) conductance[axis * level.stride() + to] = from.t[axis][i];
+    float sum = from.absorption[i];
+    for (const auto& face : from.boundary) sum += face[i];
+    loss[to] = sum;
   }
 }
 
@@ -130,9 +135,22 @@ void link_to_parent(MultigridLevel& fine, const BlockGrid& coarse) {
     fine.parent.push_back(coarse.find(at / 2));
     fine.octant.push_back((at.x & 1) + 2 * (at.y & 1) + 4 * (at.z & 1));
   }
+  fine.parent.push_back(coarse.count());
+  fine.octant.push_back(0);
 }
 
 }  // namespace
+
+const std::array<std::int16_t, 512>& packed_places() {
+  static const std::array<std::int16_t, 512> places = [] {
+    std::array<std::int16_t, 512> out{};
+    for (int v = 0; v < kVoxels; ++v) {
+      out[v] = static_cast<std::int16_t>(TURBID_PACKED(v % kEdge, v / kEdge % kEdge, v / (kEdge * kEdge)));
+    }
+    return out;
+  }();
+  return places;
+}
 
 std::vector<MultigridLevel> build_multigrid(const DiffusionMedium& medium) {
   std::vector<MultigridLevel> levels;
@@ -145,14 +163,16 @@ std::vector<MultigridLevel> build_multigrid(const DiffusionMedium& medium) {
     extent = (extent + 1) / 2;
   }
   const std::vector<float> conductance = face_conductances(medium);
-  for (int channel = 0; channel < medium.channels; ++channel) {
-    Operator current = fine_operator(medium, conductance, channel);
-    store(levels[0], current, channel);
-    for (std::size_t level = 1; level < levels.size(); ++level) {
-      current = coarsen(current, levels[level - 1].blocks, levels[level].blocks);
-      store(levels[level], current, channel);
+  parallel_ranges(medium.channels, [&](int begin, int end) {
+    for (int channel = begin; channel < end; ++channel) {
+      Operator current = fine_operator(medium, conductance, channel);
+      store(levels[0], current, channel);
+      for (std::size_t level = 1; level < levels.size(); ++level) {
+        current = coarsen(current, levels[level - 1].blocks, levels[level].blocks);
+        store(levels[level], current, channel);
+      }
     }
-  }
+  });
   return levels;
 }
 

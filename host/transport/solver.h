@@ -84,6 +84,7 @@ struct SolverReport {
   int iterations = 0;            ///< conjugate-gradient steps, or lattice sweeps
   double error_estimate = 0;     ///< relative error of the fluence that the solver's own stopping test gives
   std::size_t active_blocks = 0, active_voxels = 0;
+  std::size_t diffusion_bytes = 0;  ///< device memory of the diffusion's operator and vectors [bytes]
   EnergyBalance energy;
   std::optional<PhotonTallies> photon;   ///< photon solver only
 };
@@ -107,6 +108,15 @@ class TransportSolver {
   virtual void prepare(const MediumVolume&) = 0;
   /// May be called often after one prepare.
   virtual LightSolution light(const LightList&) = 0;
+
+  /// Whether `light` starts from the last answer where there is one: faster after a small change of the lights, to the same
+  /// tolerance. By default every call starts afresh and gives the same bits whatever came before it. The photon solver, whose
+  /// answers must be independent, starts afresh always.
+  void set_warm_start(bool warm) { warm_start_ = warm; }
+  bool warm_start() const { return warm_start_; }
+
+ private:
+  bool warm_start_ = false;
 };
 
 /// Everything a solver is made from.

@@ -14,6 +14,7 @@ class SteadySolver final : public MarchingSolver {
   const char* name() const override { return "steady"; }
   void prepare_diffusion(const DiffusionMedium&) override;
   DiffuseLight diffuse(const LightSource&) override;
+  std::size_t diffusion_bytes() const override { return solve_ ? solve_->device_bytes() : 0; }
 
  private:
   std::optional<SteadySolve> solve_;

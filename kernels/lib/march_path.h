@@ -31,12 +31,14 @@ typedef struct {
 
 static Colour none(void) { return colour_of(0.0f, 0.0f, 0.0f); }
 
-static void store_ray(Sinks* sinks, const Path* path, const Ray* ray, Colour power, const global RayState* parent) {
+static void store_ray(Sinks* sinks, const Path* path, const Ray* ray, float room, Colour power,
+                      const global RayState* parent) {
   global RayState* state = sinks->next + atomic_inc(sinks->next_count);
   vstore3(ray->x, 0, state->position);
   vstore3(ray->v, 0, state->velocity);
   state->region = ray->region;
   state->grace = ray->grace;
+  state->room = room;
 #if TURBID_CHANNELS == 3
   vstore3(power.xyz, 0, state->power);
 #else
@@ -125,8 +127,8 @@ static void begin(Path* path, const Medium* medium, Sinks* sinks, const MarchPar
   path->steps = state->steps;
   path->steps_left = p->batch_steps;
   path->place.block = -1;
-  path->place.room = 0.0f;
-  path->place.least_room = 1.0f;
+  look_around(medium, &path->ray, p->step, 0.0f, &path->place);
+  path->place.room = state->room;
   if (!state->entering) return;
   const int region = path->ray.region;
   const float eta_from = length(path->ray.v);
@@ -205,8 +207,8 @@ static void meet_surface(Path* path, const Medium* medium, Sinks* sinks, const M
     tally(sinks, TURBID_TALLY_IN_FLIGHT, side_power, p);
     return;
   }
-  store_ray(sinks, path, &side, side_power, state);
-  store_ray(sinks, path, ray, path->power, state);
+  store_ray(sinks, path, &side, 0.0f, side_power, state);
+  store_ray(sinks, path, ray, 0.0f, path->power, state);
   end_path(path, sinks, p, none());
 }
 

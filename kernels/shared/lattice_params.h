@@ -9,6 +9,9 @@
 
 #define TURBID_BLOCK_VOXELS 512
 
+// Place of voxel (x, y, z) of a block of 8^3 in the steady solver's order (kernels/lib/packed_block.h): by colours.
+#define TURBID_PACKED(x, y, z) (8 * (2 * (4 * (z) + ((y) >> 1)) + (((x) + (y) + (z)) & 1)) + 4 * ((y) & 1) + ((x) >> 1))
+
 // One number per colour channel (scalars of conjugate gradients).
 typedef struct {
   float value[3];

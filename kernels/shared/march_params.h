@@ -17,7 +17,7 @@ typedef struct {
   int bounces;        // interfaces met so far
   int steps;          // steps done so far
   int texel;          // of the light's shadow map, counted through all maps; -1: none
-  int padding;
+  float room;         // see Place in lib/trace.h; 0: unknown
 } RayState;
 TURBID_ASSERT_SIZE(RayState, 80);
 

@@ -14,9 +14,6 @@
 namespace turbid {
 namespace {
 
-using F = cl::Buffer<float>;
-using I = cl::Buffer<std::int32_t>;
-
 MediumDescription mixed_scene(glm::ivec3 voxels = {24, 16, 16}) {
   MediumDescription scene = test::empty_domain(voxels, 1.0f);
   scene.faces = {FaceBoundary::open,   FaceBoundary::open,     FaceBoundary::mirror,
@@ -28,110 +25,31 @@ MediumDescription mixed_scene(glm::ivec3 voxels = {24, 16, 16}) {
   return scene;
 }
 
-/// The kernels on all levels, as SteadySolve strings them together.
-class Device {
+/// The solver's own parts, in double precision on the outside.
+class Device : public SteadySolve {
  public:
-  Device(const DiffusionMedium& medium) : channels_(medium.channels), stride_(medium.stride()) {
-    program_ = session_.build("steady.cl", {});
-    smooth_ = {program_, "smooth"};
-    restrict_ = {program_, "restrict_residual"};
-    prolong_ = {program_, "prolong"};
-    apply_ = {program_, "apply"};
-    for (const MultigridLevel& from : build_multigrid(medium)) {
-      Level level;
-      level.blocks = from.blocks.count();
-      level.t = session_.upload(from.conductance);
-      level.loss = session_.upload(from.loss);
-      level.neighbours = session_.upload(from.neighbours);
-      level.parent = session_.upload(from.parent);
-      level.octant = session_.upload(from.octant);
-      level.b = session_.zeros<float>(from.stride() * channels_);
-      level.x = session_.zeros<float>(from.stride() * channels_);
-      level.y = session_.zeros<float>(from.stride() * channels_);
-      levels_.push_back(std::move(level));
-    }
-    sums_ = session_.zeros<float>(levels_[0].blocks * channels_);
-  }
-  std::size_t levels() const { return levels_.size(); }
+  explicit Device(const DiffusionMedium& medium) : SteadySolve(test::session(), medium, {}) {}
+  std::size_t levels() const { return levels_.size() - 1 + tail_levels_; }
 
   std::vector<double> apply(const std::vector<double>& u) {
-    Level& level = levels_[0];
-    put(level.x, u);
-    apply_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.x, level.y, sums_,
-                   level.blocks, channels_);
-    return take(level.y);
-  }
-  /// x after `sweeps` of the smoother.
-  std::vector<double> smooth(const std::vector<double>& b, const std::vector<double>& x, int sweeps, int reverse,
-                             int from_zero) {
-    Level& level = levels_[0];
-    put(level.b, b);
-    put(level.x, x);
-    smooth_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.b, level.x, level.y,
-                    level.blocks, channels_, sweeps, reverse, from_zero);
-    return take(level.y);
+    put(levels_[0].y, u);
+    SteadySolve::apply(levels_[0].y, levels_[0].x);
+    return take(levels_[0].x);
   }
   std::vector<double> v_cycle(const std::vector<double>& r) {
     put(levels_[0].b, r);
-    v_cycle(0);
+    SteadySolve::v_cycle(0);
     return take(levels_[0].y);
   }
+  /// b . y of the last V-cycle as the kernel summed it.
+  double product() { return channel_sums()[0]; }
 
  private:
-  struct Level {
-    int blocks = 0;
-    F t, loss, b, x, y;
-    I neighbours, parent, octant;
-  };
-  cl::Range global(const Level& level) const {
-    return {static_cast<std::size_t>(level.blocks), static_cast<std::size_t>(channels_)};
-  }
-  void put(F& buffer, const std::vector<double>& values) {
-    std::vector<float> padded((stride_ + 512) * channels_, 0.0f);
-    for (int c = 0; c < channels_; ++c) {
-      for (std::size_t i = 0; i < stride_; ++i)
-        padded[c * (stride_ + 512) + i] = static_cast<float>(values[c * stride_ + i]);
-    }
-    session_.write(queue_, buffer, std::span<const float>(padded));
-  }
+  void put(F& buffer, const std::vector<double>& values) { write_field(buffer, {values.begin(), values.end()}); }
   std::vector<double> take(const F& buffer) {
-    const std::vector<float> padded = session_.read(queue_, buffer);
-    std::vector<double> values(stride_ * channels_);
-    for (int c = 0; c < channels_; ++c) {
-      for (std::size_t i = 0; i < stride_; ++i) values[c * stride_ + i] = padded[c * (stride_ + 512) + i];
-    }
-    return values;
+    const std::vector<float> values = read_field(buffer);
+    return {values.begin(), values.end()};
   }
-  void v_cycle(std::size_t index) {
-    Level& level = levels_[index];
-    if (index + 1 == levels_.size()) {
-      smooth_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.b, level.x, level.y,
-                      level.blocks, channels_, 2, 0, 1);
-      return;
-    }
-    Level& coarse = levels_[index + 1];
-    smooth_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.b, level.y, level.x,
-                    level.blocks, channels_, 2, 0, 1);
-    restrict_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.b, level.x,
-                      level.parent, level.octant, coarse.b, level.blocks, coarse.blocks, channels_);
-    v_cycle(index + 1);
-    prolong_.enqueue(queue_, global(level), {1, 1}, coarse.y, level.parent, level.octant, level.x, level.blocks,
-                     coarse.blocks, channels_);
-    smooth_.enqueue(queue_, global(level), {1, 1}, level.t, level.loss, level.neighbours, level.b, level.x, level.y,
-                    level.blocks, channels_, 2, 1, 0);
-  }
-
-  cl::Session& session_ = test::session();
-  cl::Queue& queue_ = session_.lattice_queue();
-  int channels_;
-  std::size_t stride_;
-  std::vector<Level> levels_;
-  cl::Program program_;
-  cl::Kernel<F, F, I, F, F, F, int, int, int, int, int> smooth_;
-  cl::Kernel<F, F, I, F, F, I, I, F, int, int, int> restrict_;
-  cl::Kernel<F, I, I, F, int, int, int> prolong_;
-  cl::Kernel<F, F, I, F, F, F, int, int> apply_;
-  F sums_;
 };
 
 std::vector<double> random_field(const DiffusionMedium& medium, unsigned seed) {
@@ -197,36 +115,29 @@ TEST(SteadyOperator, AConstantLosesWhatIsAbsorbedAndEscapes) {
   EXPECT_NEAR(found / expected, 1, 1e-5);  // the losses' own rounding; conductances are 1e9 times larger
 }
 
-TEST(Smoother, ReducesTheEnergyOfAnyError) {
+TEST(VCycle, ReducesTheEnergyOfAnyError) {
+  // As an iteration of its own: x += V (b - A x). Contrast 100 in every voxel; conjugate gradients around it do better.
   const DiffusionMedium medium = test::random_medium(mixed_scene(), 0.1, 10, 7);
   const test::DenseDiffusion dense(medium, 0);
   Device device(medium);
-  const auto exact = random_field(medium, 8), start = random_field(medium, 9);
-  const auto b = dense.apply(exact);
-  auto energy = [&](const std::vector<double>& x) {
-    std::vector<double> e(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) e[i] = x[i] - exact[i];
-    return dot(e, dense.apply(e));
-  };
-  for (int reverse : {0, 1}) {
-    auto x = start;
-    double before = energy(x);
-    for (int sweep = 0; sweep < 4; ++sweep) {
-      x = device.smooth(b, x, 2, reverse, 0);
-      const double now = energy(x);
-      EXPECT_LT(now, before);
-      before = now;
-    }
-    EXPECT_LT(before, 0.1 * energy(start));
+  auto error = random_field(medium, 8);
+  auto energy = [&] { return dot(error, dense.apply(error)); };
+  const double first = energy();
+  double before = first;
+  for (int cycle = 0; cycle < 4; ++cycle) {
+    const auto correction = device.v_cycle(dense.apply(error));
+    for (std::size_t i = 0; i < error.size(); ++i) error[i] -= correction[i];
+    EXPECT_LT(energy(), 0.5 * before) << cycle;
+    before = energy();
   }
+  EXPECT_LT(before, 1e-3 * first);
 }
 
-TEST(Smoother, FromZeroIsFromAZeroField) {
+TEST(VCycle, SumsResidualTimesCorrection) {
   const DiffusionMedium medium = test::random_medium(mixed_scene(), 0.1, 10, 10);
   Device device(medium);
-  const auto b = random_field(medium, 11);
-  const auto garbage = random_field(medium, 12);
-  EXPECT_EQ(device.smooth(b, garbage, 2, 0, 1), device.smooth(b, std::vector<double>(b.size(), 0.0), 2, 0, 0));
+  const auto r = random_field(medium, 11), z = device.v_cycle(r);
+  EXPECT_NEAR(device.product() / dot(r, z), 1, 1e-6);
 }
 
 TEST(VCycle, IsSymmetricAndPositive) {
@@ -276,6 +187,37 @@ TEST(SteadySolve, TheSecondSolveForgetsTheFirst) {
   const auto first = solve.solve(q1).u;
   solve.solve(q2);
   EXPECT_EQ(first, solve.solve(q1).u);
+}
+
+TEST(SteadySolve, AWarmStartKnowsTheLastAnswer) {
+  const DiffusionMedium medium = test::random_medium(mixed_scene(), 0.1, 10, 19, 3);
+  std::vector<float> q(3 * medium.stride(), 0.0f), dimmed = q, moved = q;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    if (medium.region[i % medium.stride()] < 0) continue;
+    const float x = static_cast<float>(test::voxel_of(medium, i % medium.stride()).x);
+    q[i] = std::exp(-0.3f * x);
+    moved[i] = q[i] * (1 + 0.05f * std::sin(x));
+  }
+  const float colour[3] = {0.5f, 2.0f, 0.25f};
+  for (std::size_t i = 0; i < q.size(); ++i) dimmed[i] = colour[i / medium.stride()] * q[i];
+  SteadySettings deep;
+  deep.tolerance = 1e-6f;
+  const auto exact = SteadySolve(test::session(), medium, deep).solve(moved).u;
+  SteadySolve solve(test::session(), medium, {});
+  const SteadyResult cold = solve.solve(q);
+  EXPECT_LE(solve.solve(q, true).iterations, 1);       // nothing changed
+  EXPECT_LE(solve.solve(dimmed, true).iterations, 1);  // each colour in its own proportion
+  const SteadyResult warm = solve.solve(moved, true);
+  EXPECT_LT(warm.iterations, cold.iterations);
+  double difference = 0, norm = 0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    difference += std::pow(warm.u[i] - exact[i], 2);
+    norm += std::pow(exact[i], 2);
+  }
+  // The tolerance is 1e-4 in the energy norm, and the estimate is that of the iterate before the last.
+  EXPECT_LT(std::sqrt(difference / norm), 1e-4);
+  EXPECT_LT(warm.residual_sum, 3e-6);
+  EXPECT_EQ(solve.solve(q).u, cold.u);                 // a cold start forgets
 }
 
 }  // namespace

@@ -95,9 +95,10 @@ std::vector<EnergyCase> energy_cases() {
 
 TEST(EnergyBalance, ClosesForEveryKindOfMediumAndBothSolvers) {
   for (const EnergyCase& c : energy_cases()) {
-    for (const char* solver : {"steady", "lattice"}) {
+    for (const char* solver : {"steady", "lattice", "global lattice"}) {
       SolverSettings settings;
-      settings.solver = solver;
+      settings.solver = solver == std::string("steady") ? "steady" : "lattice";
+      if (solver == std::string("global lattice")) settings.lattice.block_edge = 0;
       settings.lattice.tolerance = 1e-3f;  // the balance holds at any stage: what is still on its way is counted
       const test::Run run = test::run(c.scene, c.lights, settings);
       const EnergyBalance& e = run.energy();
@@ -162,6 +163,36 @@ TEST(Solvers, SteadyAndLatticeAgreeToTheirTolerance) {
   }
 }
 
+TEST(Solvers, AWarmStartAnswersLikeAColdOneAndKeepsTheBalance) {
+  const EnergyCase c = energy_cases()[1];
+  const MediumVolume medium = voxelise(c.scene);
+  Progress progress(Verbosity::quiet);
+  LightList moved = c.lights;
+  moved[0].direction = glm::normalize(glm::vec3(1, -0.4f, 0.35f));
+  for (const char* name : {"steady", "lattice"}) {
+    SolverSettings settings;
+    settings.solver = name;
+    const auto solver = make_solver({.session = test::session(),
+                                     .progress = progress,
+                                     .settings = settings,
+                                     .features = scene_features(medium, c.lights),
+                                     .description = c.scene,
+                                     .surroundings = {}});
+    solver->prepare(medium);
+    const LightSolution cold = solver->light(moved);
+    const LightSolution first = solver->light(c.lights);
+    solver->set_warm_start(true);
+    const LightSolution same = solver->light(c.lights), warm = solver->light(moved);
+    EXPECT_LE(same.report.iterations, name == std::string("steady") ? 1 : first.report.iterations / 4) << name;
+    EXPECT_LT(warm.report.iterations, cold.report.iterations) << name;
+    EXPECT_LT(relative_difference(warm.volume.fluence, cold.volume.fluence), 3e-4) << name;  // 1e-4 each, in two norms
+    EXPECT_LT(warm.report.energy.imbalance(), 1e-5) << name;
+    EXPECT_LT(same.report.energy.imbalance(), 1e-5) << name;
+    solver->set_warm_start(false);
+    EXPECT_EQ(solver->light(moved).volume.fluence, cold.volume.fluence) << name;
+  }
+}
+
 TEST(Runs, RepeatToTheBit) {
   const std::vector<EnergyCase> cases = energy_cases();
   for (const char* solver : {"steady", "lattice"}) {
@@ -189,9 +220,10 @@ std::uint64_t fingerprint() {
   };
   for (const EnergyCase& c : energy_cases()) {
     if (c.name != std::string("nested") && c.name != std::string("heterogeneous")) continue;
-    for (const char* solver : {"steady", "lattice"}) {
+    for (const char* solver : {"steady", "lattice", "global lattice"}) {
       SolverSettings settings;
-      settings.solver = solver;
+      settings.solver = solver == std::string("steady") ? "steady" : "lattice";
+      if (solver == std::string("global lattice")) settings.lattice.block_edge = 0;
       settings.lattice.tolerance = 1e-3f;
       const test::Run run = test::run(c.scene, c.lights, settings);
       add(run.solution.volume.fluence.data(), 4 * run.solution.volume.fluence.size());

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies and materials become voxels: distances, then who owns each voxel, then coefficients, then the blurred index.
+#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 
 #include "host/base/errors.h"
+#include "kernels/shared/medium_params.h"
 #include "volumes/medium_grids.h"
 #include "volumes/vdb_file.h"
 
@@ -49,28 +51,45 @@ void require_consistent(const MediumDescription& scene) {
 
 }  // namespace
 
+// As region_with_room in kernels/lib/medium.h decides for points: the last body that holds a voxel's centre, or in the
+// gap between two that touch the later one.
 openvdb::Int32Grid::Ptr owner_of_voxels(const MediumVolume::Grids& medium) {
   return grid_from_blocks<openvdb::Int32Grid>(medium.frame, 0, [&](glm::ivec3 block) {
     BlockContent<openvdb::Int32Grid> content;
     const auto at = first_voxel(block);
-    int everywhere = 0;
-    for (int r = 1; r < static_cast<int>(medium.regions.size()); ++r) {
+    constexpr int kUndecided = -1;
+    std::array<int, kBlockVoxels> owner, nearest_region;
+    std::array<float, kBlockVoxels> nearest;  // of the bodies passed over
+    owner.fill(kUndecided);
+    nearest.fill(1e9f);
+    int everywhere = 0;  // of the voxels that no surface comes near
+    bool mixed = false;
+    for (int r = static_cast<int>(medium.regions.size()) - 1; r >= 1 && everywhere == 0; --r) {
       const auto& tree = medium.fields[r].signed_distance->tree();
       const auto* leaf = tree.probeConstLeaf(at);
       if (!leaf) {
-        if (tree.getValue(at) < 0) {
-          everywhere = r;
-          content.leaf.reset();
-        }
+        if (tree.getValue(at) < 0) everywhere = r;
         continue;
       }
       const float* d = leaf->buffer().data();
-      if (std::none_of(d, d + kBlockVoxels, [](float v) { return v < 0; })) continue;
-      if (!content.leaf) content.leaf = make_leaf<openvdb::Int32Grid>(block, everywhere, everywhere > 0);
-      for (int offset = 0; offset < kBlockVoxels; ++offset)
-        if (d[offset] < 0) content.leaf->setValueOn(offset, r);
+      for (int i = 0; i < kBlockVoxels; ++i) {
+        if (owner[i] != kUndecided) continue;
+        if (d[i] < 0) {
+          owner[i] = r;
+        } else if (nearest[i] + d[i] < TURBID_TOUCH) {
+          owner[i] = nearest_region[i];
+        } else if (d[i] < nearest[i]) {
+          nearest[i] = d[i];
+          nearest_region[i] = r;
+        }
+        mixed = mixed || owner[i] != kUndecided;
+      }
     }
-    if (!content.leaf && everywhere > 0) {
+    if (mixed) {
+      content.leaf = make_leaf<openvdb::Int32Grid>(block, everywhere, everywhere > 0);
+      for (int i = 0; i < kBlockVoxels; ++i)
+        if (owner[i] != kUndecided) content.leaf->setValueOn(i, owner[i]);
+    } else if (everywhere > 0) {
       content.tile = everywhere;
       content.tile_active = true;
     }

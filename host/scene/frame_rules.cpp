@@ -40,39 +40,42 @@ std::optional<double> whole_blocks(double extent, double voxel_size) {
   return std::fabs(blocks - whole) <= 1e-5 * whole ? std::optional(whole) : std::nullopt;
 }
 
-/// The largest voxel size <= `asked` at which all exact extents are whole blocks.
-double fit_exact_axes(const std::vector<double>& extents, double longest, double asked) {
-  const auto fits = [&](double size) {
-    return std::all_of(extents.begin(), extents.end(), [&](double e) { return whole_blocks(e, size).has_value(); });
-  };
-  const double first = extents.front() / kBlockEdge;  // voxel size at one block
-  const double start = std::max(std::ceil(first / asked - 1e-5), 1.0);
-  for (double blocks = start; blocks <= std::max(1.25 * start, start + 1); ++blocks)
-    if (fits(first / blocks)) return first / blocks;
+/// Whether all extents are whole blocks.
+bool all_fit(const std::vector<double>& extents, double voxel_size) {
+  return std::all_of(extents.begin(), extents.end(), [&](double e) { return whole_blocks(e, voxel_size).has_value(); });
+}
 
-  std::vector<std::string> below, above;  // resolutions that work
-  for (double blocks = 1; blocks <= 1024; ++blocks)
-    if (fits(first / blocks)) {
+/// Resolutions at which all extents are whole blocks: two below so many blocks along the first one, and three from
+/// there on; empty if there are none.
+std::string fitting_resolutions(const std::vector<double>& extents, double longest, double blocks_wanted) {
+  const double first = extents.front() / kBlockEdge;  // voxel size at one block
+  std::vector<std::string> below, above;
+  for (double blocks = 1; blocks <= 1024 && above.size() < 3; ++blocks)
+    if (all_fit(extents, first / blocks)) {
       const std::string resolution = rounded(std::floor(longest * blocks / first * (1 + 1e-9)), 6);
-      if (blocks < start)
-        below.push_back(resolution);
-      else if (above.size() < 3)
-        above.push_back(resolution);
+      (blocks < blocks_wanted ? below : above).push_back(resolution);
     }
-  if (below.empty() && above.empty())
-    throw InputError(
-        "mirror and periodic axes keep their exact extent, which must be a whole number of 8-voxel blocks, but no "
-        "voxel size "
-        "divides them all: change min or max so that these extents have a simple ratio");
   std::string list;
   for (std::size_t i = below.size() > 2 ? below.size() - 2 : 0; i < below.size(); ++i)
     list += (list.empty() ? "" : ", ") + below[i];
   for (const std::string& resolution : above) list += (list.empty() ? "" : ", ") + resolution;
-  throw InputError(
-      "mirror and periodic axes keep their exact extent, which must be a whole number of 8-voxel blocks: resolutions "
-      "that "
-      "work are " +
-      list);
+  return list;
+}
+
+/// The largest voxel size <= `asked` at which all exact extents are whole blocks.
+double fit_exact_axes(const std::vector<double>& extents, double longest, double asked) {
+  const double first = extents.front() / kBlockEdge;  // voxel size at one block
+  const double start = std::max(std::ceil(first / asked - 1e-5), 1.0);
+  for (double blocks = start; blocks <= std::max(1.25 * start, start + 1); ++blocks)
+    if (all_fit(extents, first / blocks)) return first / blocks;
+
+  const std::string rule =
+      "mirror and periodic axes keep their exact extent, which must be a whole number of 8-voxel blocks";
+  const std::string list = fitting_resolutions(extents, longest, start);
+  if (list.empty())
+    throw InputError(
+        rule + ", but no voxel size divides them all: change min or max so that these extents have a simple ratio");
+  throw InputError(rule + ": resolutions that work are " + list);
 }
 
 void refuse_too_large(const FrameRequest& request, const double voxels[3], double voxel_size) {
@@ -89,6 +92,12 @@ void refuse_too_large(const FrameRequest& request, const double voxels[3], doubl
 }
 
 }  // namespace
+
+std::string fitting_resolutions(const FrameRequest& request, double voxel_size) {
+  const glm::dvec3 size = glm::dvec3(request.box.upper) - glm::dvec3(request.box.lower);
+  return fitting_resolutions({size.x, size.y, size.z}, std::max({size.x, size.y, size.z}),
+                             size.x / (kBlockEdge * voxel_size));
+}
 
 FrameAnswer make_frame(const FrameRequest& request) {
   const glm::dvec3 size = glm::dvec3(request.box.upper) - glm::dvec3(request.box.lower);
@@ -115,7 +124,9 @@ FrameAnswer make_frame(const FrameRequest& request) {
   for (int axis = 0; axis < 3; ++axis) {
     answer.frame.voxels[axis] = static_cast<int>(voxels[axis]);
     const double growth = voxels[axis] * h - size[axis];
-    const double below = fixed(request, 2 * axis) ? 0.0 : fixed(request, 2 * axis + 1) ? growth : 0.5 * growth;
+    double below = fixed(request, 2 * axis) ? 0.0 : fixed(request, 2 * axis + 1) ? growth : 0.5 * growth;
+    // Where `min` is given, a voxel's face stays on it: voxels coincide with those of the user's own grids.
+    if (!request.automatic && !fixed(request, 2 * axis + 1)) below = h * std::floor(below / h + 1e-5);
     answer.frame.origin[axis] = static_cast<float>(static_cast<double>(request.box.lower[axis]) - below);
   }
   return answer;

@@ -28,10 +28,14 @@ struct FrameAnswer {
   double asked_voxel_size = 0;  ///< before it was adjusted to mirror and periodic axes
 };
 
-/// Voxels per axis are rounded up to whole blocks and the domain grows to match: evenly at both ends, only at the open
-/// end of an axis with one mirror face. An axis whose two faces are mirrors or periodic keeps its exact extent; there
+/// Voxels per axis are rounded up to whole blocks and the domain grows to match: evenly at both ends (given bounds by whole
+/// voxels at the lower one, so that `min` stays a voxel's face), only at the open end of an axis with one mirror face. An axis whose two faces are mirrors or periodic keeps its exact extent; there
 /// the voxel size shrinks, by a quarter at the most, until blocks fit. Throws InputError (no place in it) if that can't
 /// be, naming resolutions that work, or if the grid would be too large, naming the memory that it would need.
 FrameAnswer make_frame(const FrameRequest& request);
+
+/// Resolutions near `voxel_size` [scene units] at which a given domain is whole blocks along all sides, so that it need not
+/// grow: "88, 96, 104"; empty if there are none up to 1024 blocks.
+std::string fitting_resolutions(const FrameRequest& request, double voxel_size);
 
 }  // namespace turbid::scene

@@ -87,6 +87,31 @@ void check_objects(Reading& reading, const Box3& domain, const std::vector<std::
   }
 }
 
+/// What the grid adds to the domain that was asked for, where it is not empty space: else nothing changes by it.
+void tell_if_widened(Reading& reading, const DomainSpec& spec, const FrameRequest& request) {
+  const MediumDescription& medium = reading.scene.medium;
+  const Box3 asked = request.box, used{medium.frame.origin, medium.frame.upper()};
+  const float tolerance = 1e-4f * medium.frame.voxel_size;
+  bool wider = false, cuts_elsewhere = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool below = used.lower[axis] < asked.lower[axis] - tolerance;
+    const bool above = used.upper[axis] > asked.upper[axis] + tolerance;
+    wider = wider || below || above;
+    for (const Body& body : medium.bodies) {
+      const Box3 box = bounds(body.solid.mesh);
+      cuts_elsewhere = cuts_elsewhere || (below && box.lower[axis] < asked.lower[axis] - tolerance) ||
+                       (above && box.upper[axis] > asked.upper[axis] + tolerance);
+    }
+  }
+  if (!wider || !(!spec.ambient.empty() || cuts_elsewhere)) return;
+  const std::string fits = fitting_resolutions(request, medium.frame.voxel_size);
+  reading.scene.warnings.push_back(
+      place_of(spec.table->source()) + ": [domain] from " + box_text(asked) +
+      " is no whole number of 8-voxel blocks: it became " + box_text(used) + ", all filled with " +
+      (spec.ambient.empty() ? "the objects that reach beyond it" : "\"" + spec.ambient + "\"") +
+      (fits.empty() ? "; no resolution fits all three sides" : "; resolutions that fit exactly are " + fits));
+}
+
 Box3 bounds_of_all(const std::vector<Body>& bodies) {
   Box3 box = bounds(bodies.front().solid.mesh);
   for (const Body& body : bodies) {
@@ -151,6 +176,7 @@ void fix_frame(Reading& reading, const DomainSpec& spec, const std::vector<std::
     scene.warnings.push_back(place_of(spec.size_node->source()) + ": voxel_size = " + text_of(*spec.size_node) +
                              " became " + text_of(answer.frame.voxel_size) +
                              " so that mirror and periodic extents are whole blocks");
+  if (spec.box) tell_if_widened(reading, spec, request);
   if (spec.box) check_objects(reading, {answer.frame.origin, answer.frame.upper()}, object_places);
   const glm::ivec3 n = answer.frame.voxels;
   spec.effective->comment(std::to_string(n.x) + " x " + std::to_string(n.y) + " x " + std::to_string(n.z) +

@@ -58,7 +58,8 @@ class TileMaps {
   std::vector<int> map_;
 };
 
-/// For every block whether body r's surface may pass through it: by trilinear interpolation exactly where both signs occur.
+/// For every block whether body r's surface may pass through it: by trilinear interpolation exactly where both signs occur;
+/// and where the block ends within the gap to another body that r touches.
 std::vector<int> classify(const MediumVolume& medium, int r) {
   const glm::ivec3 blocks = medium.frame().blocks();
   std::vector<int> state(blocks.x * blocks.y * blocks.z, TURBID_TILE_OUTSIDE);
@@ -67,7 +68,7 @@ std::vector<int> classify(const MediumVolume& medium, int r) {
     for (int block = begin; block < end; ++block) {
       medium.read_signed_distance(r, 8 * block_coordinates(block, blocks), glm::ivec3(kTileEdge), nodes);
       const auto [low, high] = std::minmax_element(nodes.begin(), nodes.end());
-      state[block] = *low >= 0.0f ? TURBID_TILE_OUTSIDE : *high < 0.0f ? TURBID_TILE_INSIDE : 0;
+      state[block] = *low >= TURBID_TOUCH ? TURBID_TILE_OUTSIDE : *high < 0.0f ? TURBID_TILE_INSIDE : 0;
     }
   });
   return state;

@@ -3,6 +3,8 @@
 #include "host/transport/global_lattice.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "host/transport/lattice_medium.h"
 
@@ -104,6 +106,8 @@ LatticeScheme::Change GlobalLattice::read_change() {
       change += at[0];
       total += at[1];
     }
+    // A lattice that has overflowed must not look like one that has come to rest.
+    if (!std::isfinite(change) || !std::isfinite(total)) return {std::numeric_limits<double>::quiet_NaN()};
     if (total > 0) result.relative = std::max(result.relative, change / total);
   }
   return result;

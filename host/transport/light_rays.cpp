@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lights in; rays at the medium's surface and shadow maps out. One ray per texel of a map that OSMesa rasterises from the
-// light: a regular grid, fine enough for the wanted rays per voxel face.
+// light: a regular grid, fine enough for the wanted rays per voxel face. Where the domain's own faces bound the light (they
+// mirror or repeat, or its ambient medium is lit) texels are clipped there: power is irradiance times area times cosine.
 #include "host/transport/light_rays.h"
 
 #include <algorithm>
@@ -8,6 +9,8 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+
+#include "host/transport/parallel_texels.h"
 
 namespace turbid {
 namespace {
@@ -93,9 +96,12 @@ class RayStarter {
 
   /// A ray that meets the rasterised surface at pixel `i`.
   void launch(const RasterImage& image, std::size_t i, glm::vec3 direction, glm::dvec3 power, bool has_map = true) {
-    const int region = image.id[i];
-    if (region < 0 || !image.front[i]) return;
-    const glm::vec3 hit = image.position[i];
+    if (image.id[i] < 0 || !image.front[i]) return;
+    start_at(image.position[i], image.normal[i], image.id[i], direction, power, has_map ? static_cast<std::ptrdiff_t>(i) : -1);
+  }
+
+  /// A ray that meets a region's surface; `texel` of this light's map, or -1.
+  void start_at(glm::vec3 hit, glm::vec3 normal, int region, glm::vec3 direction, glm::dvec3 power, std::ptrdiff_t texel) {
     const glm::vec3 slack(0.01f * frame_.voxel_size);
     if (glm::any(glm::lessThan(hit, frame_.origin - slack)) || glm::any(glm::greaterThan(hit, frame_.upper() + slack))) return;
     if (medium_.region(region).opaque) {
@@ -109,12 +115,12 @@ class RayStarter {
       push(start, ambient_eta(start) * direction, -direction, 0, false, power);
       return;
     }
-    const std::ptrdiff_t texel = has_map ? static_cast<std::ptrdiff_t>(texels_before_ + i) : -1;
-    if (has_map) {
+    if (texel >= 0) {
+      texel += static_cast<std::ptrdiff_t>(texels_before_);
       result_.texel_power.resize(std::max(result_.texel_power.size(), static_cast<std::size_t>(texel) + 1), glm::dvec3(0));
-      result_.texel_power[texel] = power;
+      result_.texel_power[texel] += power;
     }
-    push(hit, ambient_eta(hit) * direction, image.normal[i], region, region > 0, power, texel);
+    push(hit, ambient_eta(hit) * direction, normal, region, region > 0, power, texel);
   }
 
   /// hit - back * direction, or where the ray enters the domain if that lies outside.
@@ -158,14 +164,38 @@ class RayStarter {
 
   void directional(const Light& light) {
     const glm::vec3 direction = glm::normalize(light.direction);
-    const int size = map_size(2.0f * radius_);
-    const RasterView view = shifted(parallel_view(direction, centre_, radius_, size));
+    const bool bounded = surfaces_.ambient || !all_open();
+    const float radius = radius_ + (bounded ? texel_ : 0.0f);  // texels whose centres lie just outside count as well
+    const int size = map_size(2.0f * radius);
+    const RasterView view = shifted(parallel_view(direction, centre_, radius, size));
     const RasterImage image = rasterise(surfaces_.meshes, view);
-    const double area = std::pow(2.0 * radius_ / size, 2);
+    const double area = std::pow(2.0 * radius / size, 2);
     const glm::dvec3 irradiance = channels(light.irradiance);
-    result_.emitted += irradiance * glm::pi<double>() * static_cast<double>(radius_) * static_cast<double>(radius_);
-    for (std::size_t i = 0; i < image.id.size(); ++i) launch(image, i, direction, irradiance * area);
-    keep_shadow(image, view, centre_ - radius_ * direction, direction, true);
+    if (!bounded) {
+      result_.emitted += irradiance * glm::pi<double>() * static_cast<double>(radius) * static_cast<double>(radius);
+      for (std::size_t i = 0; i < image.id.size(); ++i) launch(image, i, direction, irradiance * area);
+    } else {
+      double shares = 0;
+      if (surfaces_.ambient) {
+        for (const FacePart& part : parts_on_faces(view, direction, frame_, medium_.faces())) {
+          start_at(part.centre, -direction, 0, direction, part.share * area * irradiance, part.texel);
+          shares += part.share;
+        }
+      } else {
+        for (const BodyPart& part : parts_on_bodies(image, view, direction, frame_, medium_.faces())) {
+          start_at(part.centre, image.normal[part.surface], image.id[part.surface], direction, part.share * area * irradiance,
+                   static_cast<std::ptrdiff_t>(part.texel));
+          shares += part.share;
+        }
+      }
+      // Bodies may catch more than comes in through the open faces: what the domain's copies would shade is not known.
+      result_.emitted += irradiance * std::max(lit_area(direction, frame_, medium_.faces()), shares * area);
+    }
+    keep_shadow(image, view, centre_ - radius * direction, direction, true);
+  }
+
+  bool all_open() const {
+    return std::ranges::all_of(medium_.faces(), [](FaceBoundary face) { return face == FaceBoundary::open; });
   }
 
   /// Solid angle that a point or spot light fills [sr].

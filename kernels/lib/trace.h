@@ -78,8 +78,16 @@ static void find_crossing(const Medium* medium, Step* step, int region, float3 a
   }
   step->next_region = next;
   step->surface = max(region, next);
-  const float d_low = surface_at(medium, step->surface, locate(a + low * (b - a))).w;
-  const float d_high = surface_at(medium, step->surface, locate(a + high * (b - a))).w;
+  const Cell cell_low = locate(a + low * (b - a)), cell_high = locate(a + high * (b - a));
+  float d_low = surface_at(medium, step->surface, cell_low).w;
+  float d_high = surface_at(medium, step->surface, cell_high).w;
+  const int other = min(region, next);
+  if ((d_low < 0.0f) == (d_high < 0.0f) && other > 0) {
+    // The gap between bodies that touch: it ends at the earlier one's surface.
+    step->surface = other;
+    d_low = surface_at(medium, other, cell_low).w;
+    d_high = surface_at(medium, other, cell_high).w;
+  }
   const float length = fmax(distance(a, b), 1e-6f);
   if ((d_low < 0.0f) != (d_high < 0.0f)) {
     const float zero = low + (high - low) * d_low / (d_low - d_high);

@@ -12,6 +12,7 @@
 #define TURBID_TILE_NODES 729
 #define TURBID_TILE_OUTSIDE (-1)  // no tile; for signed distances: every point of the block is outside the body
 #define TURBID_TILE_INSIDE (-2)   // signed distances only: every point of the block is inside the body
+#define TURBID_TOUCH 0.01f  // two bodies with a gap narrower than this between them touch [voxels]
 #define TURBID_MIXED_BLOCK (-1)   // block_region: more than one region may meet in the block
 
 #define TURBID_FACE_OPEN 0

@@ -143,6 +143,32 @@ TEST(MediumSampling, TheBodyThatStandsLaterInTheSceneOwnsAPoint) {
   for (int region = 0; region < 4; ++region) EXPECT_GT(seen[region], 10) << region;
 }
 
+TEST(MediumSampling, TouchingBodiesLeaveNoGapBetweenThem) {
+  // Faces that coincide on a voxel's face, on its centre and where blocks of cells end, and that rounding has drawn apart.
+  for (const float face : {12.0f, 12.5f, 16.5f, 14.3f}) {
+    for (const float gap : {0.0f, 1e-5f, 4e-3f}) {
+      for (const bool reversed : {false, true}) {
+        MediumDescription scene = test::empty_domain(glm::ivec3(32), 1.0f);
+        const auto layer = [&](float lower, float upper, float eta) {
+          test::add_body(scene, make_box({100, 100, upper - lower}, test::at({16, 16, 0.5f * (lower + upper)})),
+                         test::make_material({.sigma_s = glm::vec3(1), .eta = eta}));
+        };
+        if (!reversed) layer(4, face - 0.5f * gap, 1.5f);
+        layer(face + 0.5f * gap, 28, 1.3f);
+        if (reversed) layer(4, face - 0.5f * gap, 1.5f);
+        const MediumVolume volume = voxelise(scene);
+        std::vector<glm::vec3> points{{16, 16, face}};
+        for (int i = -50; i <= 50; ++i) points.emplace_back(16.2f, 15.7f, face + 2e-4f * static_cast<float>(i));
+        for (const Sample& s : sample(upload_medium(test::session(), volume, scene_features(volume, {})), points))
+          ASSERT_GT(s.region, 0) << "face " << face << ", gap " << gap << ", reversed " << reversed;
+        std::vector<int> owner(24);
+        volume.read_owner({16, 16, 4}, {1, 1, 24}, owner);
+        for (const int region : owner) ASSERT_GT(region, 0) << "face " << face << ", gap " << gap;
+      }
+    }
+  }
+}
+
 TEST(MediumSampling, SignedDistancesOfASphereAreSecondOrder) {
   // Trilinear interpolation of |x| - R: error <= h^2/8 times the curvatures' sum 2/R, 0.03 voxel at R = 8.
   MediumDescription scene = test::empty_domain(glm::ivec3(32), 1.0f);

@@ -175,6 +175,29 @@ TEST(Rays, LongStepsThroughEmptyBlocksMeetTheSameSurface) {
   }
 }
 
+TEST(Rays, GoFromABodyStraightIntoOneThatTouchesIt) {
+  // One interface from 1.5 to 1.3 at z = 16, seen at once: steps of half a voxel end on it.
+  MediumDescription scene = test::empty_domain(glm::ivec3(32), 1.0f);
+  test::add_body(scene, make_box({100, 100, 12}, test::at({16, 16, 10})),
+                 test::make_material({.sigma_s = glm::vec3(0.1f), .eta = 1.5f}));
+  test::add_body(scene, make_box({100, 100, 12}, test::at({16, 16, 22})),
+                 test::make_material({.sigma_s = glm::vec3(0.1f), .eta = 1.3f}));
+  const DeviceMedium medium = upload(scene);
+  const glm::vec3 down = 1.5f * glm::normalize(glm::vec3(0.5f, 0.2f, 1)), up = down * glm::vec3(1, 1, -1) * (1.3f / 1.5f);
+  const std::vector<test::ProbeRay> rays{{{16, 16, 14}, {0, 0, 1.5f}, 1}, {{16, 16, 18}, {0, 0, -1.3f}, 2},
+                                         {{15, 16, 14}, down, 1}, {{15, 16, 18}, up, 2}};
+  const auto out = test::trace(medium, rays, 0.5f, 8);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const int beyond = 3 - rays[i].region;
+    EXPECT_EQ(out[i].region, beyond) << i;
+    EXPECT_EQ(out[i].surfaces, 1) << i;
+    // eta sin(theta) goes on unchanged.
+    EXPECT_NEAR(out[i].v.x, rays[i].v.x, 1e-4) << i;
+    EXPECT_NEAR(out[i].v.y, rays[i].v.y, 1e-4) << i;
+    EXPECT_NEAR(glm::length(out[i].v), beyond == 1 ? 1.5 : 1.3, 1e-5) << i;
+  }
+}
+
 TEST(Rays, AStartJustOutsideTheSampledSurfaceIsForgiven) {
   MediumDescription scene = test::empty_domain(glm::ivec3(32), 1.0f);
   test::add_body(scene, make_sphere(10, test::at(glm::vec3(16))),

@@ -27,10 +27,32 @@ TEST(Frame, resolution_counts_voxels_along_the_longest_side) {
   EXPECT_EQ(frame.origin, glm::vec3(-16, -12, -10));
 }
 
-TEST(Frame, rounds_up_to_blocks_and_grows_evenly) {
+TEST(Frame, rounds_up_to_blocks_and_grows_by_whole_voxels) {
+  // 27 voxels become 32: two more below, three above, so that voxels of the user's grid are voxels here.
   const GridFrame frame = frame_of("voxel_size = 1\nmin = [-11, -12, -13]\nmax = [11, 12, 14]");
   EXPECT_EQ(frame.voxels, glm::ivec3(24, 24, 32));
-  EXPECT_EQ(frame.origin, glm::vec3(-12, -12, -15.5f));
+  EXPECT_EQ(frame.origin, glm::vec3(-12, -12, -15));
+  // The shortest side is 21.3 voxels: still, a voxel's face lies on its min.
+  const GridFrame odd = frame_of("voxel_size = 1\nmin = [-10.3, -12, -12]\nmax = [11, 12, 12]");
+  EXPECT_EQ(odd.voxels, glm::ivec3(24));
+  EXPECT_NEAR(odd.origin.x, -11.3f, 1e-5f);
+}
+
+TEST(Frame, tells_when_the_domain_grows_and_what_fills_it_changes_the_light) {
+  const std::string fog = "\n[material.m]\nsigma_s = 1\n";
+  const std::string given = "voxel_size = 1\nmin = [0, 0, 0]\nmax = [91, 91, 91]\n";
+  const Scene filled = read_text("[domain]\n" + given + "material = \"m\"" + fog);
+  ASSERT_EQ(filled.warnings.size(), 1u);
+  EXPECT_HOLDS(filled.warnings[0],
+            "s.toml:1:1: [domain] from [0.0, 0.0, 0.0] to [91.0, 91.0, 91.0] is no whole number of 8-voxel blocks: it became "
+            "[-2.0, -2.0, -2.0] to [94.0, 94.0, 94.0], all filled with \"m\"; resolutions that fit exactly are 80, 88, 96, "
+            "104, 112");
+  EXPECT_TRUE(read_text("[domain]\nresolution = 96\nmin = [0, 0, 0]\nmax = [91, 91, 91]\nmaterial = \"m\"" + fog).warnings.empty());
+  // Nothing but more vacuum around a ball; but of a ball that is cut, more is lit.
+  EXPECT_TRUE(read_text(ball("voxel_size = 1\nmin = [-11, -11, -11]\nmax = [11, 11, 11]")).warnings.empty());
+  const Scene cut = read_text(ball("voxel_size = 1\nmin = [-9, -11, -11]\nmax = [9, 11, 11]"));
+  ASSERT_EQ(cut.warnings.size(), 1u);
+  EXPECT_HOLDS(cut.warnings[0], "all filled with the objects that reach beyond it; resolutions that fit exactly are 88, 176");
 }
 
 TEST(Frame, automatic_domain_leaves_two_voxels_around_the_objects) {

@@ -80,6 +80,43 @@ TEST(PeriodicDomain, IsCrossedAsIfItWentOn) {
   EXPECT_NEAR(e.escaped_faces[2].x / (e.emitted.x - e.missed.x) / std::exp(-depth), 1, 1e-3);
 }
 
+TEST(Sunlight, BringsARepeatedDomainIrradianceTimesAreaTimesCosine) {
+  // 24 x 16 voxels of .37 repeat sideways, with a layer in them that goes on beyond the faces or ends on them.
+  const double area = 24 * 16 * 0.37 * 0.37;
+  for (const FaceBoundary sides : {FaceBoundary::periodic, FaceBoundary::mirror}) {
+    for (const bool ends : {false, true}) {
+      for (const glm::vec3 towards : {glm::vec3(0, 0, 1), glm::vec3(0.5f, -0.3f, 1), glm::vec3(-1, 0, 0.4f)}) {
+        for (const float rays_per_face : {1.0f, 3.0f, 16.0f}) {
+          MediumDescription scene = test::empty_domain({24, 16, 16}, 0.37f, sides);
+          scene.faces[4] = scene.faces[5] = FaceBoundary::open;
+          const glm::vec3 wide = ends ? glm::vec3(24, 16, 7) : glm::vec3(124, 116, 7);
+          test::add_body(scene, make_box(0.37f * wide, test::at(0.37f * glm::vec3(12, 8, 8))),
+                         test::make_material({.sigma_a = glm::vec3(1)}));
+          const test::Marched m = test::march(scene, {test::sunlight(towards)}, {.rays_per_face = rays_per_face});
+          const double expected = area * glm::normalize(towards).z;
+          // The powers of rays are floats.
+          EXPECT_NEAR(m.carried.x / expected, 1, 1e-6) << ends << " " << towards.x << " " << rays_per_face;
+          EXPECT_NEAR(m.rays.emitted.x / expected, 1, 1e-6) << ends << " " << towards.x << " " << rays_per_face;
+        }
+      }
+    }
+  }
+}
+
+TEST(Sunlight, BringsAMediumThatFillsItsDomainAllThatItsFacesCatch) {
+  for (const glm::vec3 towards : {glm::vec3(0, 1, 0), glm::vec3(0.5f, -0.3f, 1)}) {
+    for (const float rays_per_face : {1.0f, 5.0f}) {
+      MediumDescription scene = test::empty_domain({24, 8, 16}, 0.37f);
+      test::set_ambient(scene, test::make_material({.sigma_a = glm::vec3(1)}));
+      const glm::dvec3 unit = glm::abs(glm::normalize(glm::dvec3(towards)));
+      const double expected = 0.37 * 0.37 * (unit.x * 8 * 16 + unit.y * 24 * 16 + unit.z * 24 * 8);
+      const test::Marched m = test::march(scene, {test::sunlight(towards)}, {.rays_per_face = rays_per_face});
+      EXPECT_NEAR(m.carried.x / expected, 1, 1e-6) << towards.x << " " << rays_per_face;
+      EXPECT_NEAR(m.rays.emitted.x / expected, 1, 1e-6) << towards.x << " " << rays_per_face;
+    }
+  }
+}
+
 TEST(LightEntry, MatchedIndicesOtherThanOneReflectNothing) {
   // A body of the ambient's own index is no interface, also when that index is water's and the ambient is clear.
   for (bool participating : {false, true}) {

@@ -90,7 +90,7 @@ DiffusionMedium hard_medium(HardMedium kind, int n, double s, double albedo, int
       if (p[face / 2] != (face % 2 ? n - 1 : 0)) continue;
       constexpr float kMatched = 2.0f / 3.0f;  // A = 1, surface half a voxel from the centre
       out.boundary.push_back({static_cast<std::int32_t>(i / kVoxels), static_cast<std::int16_t>(i % kVoxels),
-                              static_cast<std::int8_t>(face), false, {kMatched, kMatched, kMatched}});
+                              static_cast<std::int8_t>(face), false, 0.5f, {kMatched, kMatched, kMatched}});
     }
   }
   return out;

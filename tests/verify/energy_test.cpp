@@ -64,7 +64,7 @@ TEST(Solvers, SteadyAndLatticeAgreeToTheirTolerance) {
 }
 
 TEST(Solvers, AWarmStartAnswersLikeAColdOneAndKeepsTheBalance) {
-  const EnergyCase c = energy_cases()[1];
+  const EnergyMedium c = energy_media()[1];
   const MediumVolume medium = voxelise(c.scene);
   Progress progress(Verbosity::quiet);
   LightList moved = c.lights;

@@ -23,8 +23,7 @@ Section paper_stability(const std::vector<study::Stability>& rows) {
             .title = "Growth of the populations in one step",
             .caption =
                 "Largest mode of a periodic box of 8^3 voxels, albedo .9, by power iteration. Above 1 the "
-                "lattice blows up: with the printed collision at s > 2, never with the others. Two relaxation "
-                "times keep the modes that do not matter near 1, which the steady solve makes harmless.",
+                "lattice blows up: with the printed collision at s > 2, never with the others.",
             .x = {.label = "optical thickness of a voxel, s", .log = true},
             .y = {.label = "growth per step", .log = true},
             .lines = {{.at = 1, .label = "stable below"}, {.vertical = true, .at = 2, .label = "s = 2"}}};
@@ -65,7 +64,8 @@ Section paper_stopping(const std::vector<study::Stopping>& rows) {
       .caption =
           "Each test was asked for 1e-4. The paper looks at the relative change of sparse probes from one "
           "step to the next, which says nothing of how many steps are still to come: the error left is "
-          "about change rho / (1 - rho), rho the ratio of successive changes. Slab of voxels of one mean "
+          "about change rho / (1 - rho), rho the ratio of successive changes. At low albedo it waits for "
+          "the dimmest of its probes (here one voxel in 64) and does too much. Slab of voxels of one mean "
           "free path, open towards two sides, the first eighth emits; error in L2 against the scheme's own "
           "end.",
       .x = {.label = "1 - albedo", .log = true},

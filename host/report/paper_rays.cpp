@@ -19,8 +19,7 @@ Section paper_bending(const std::vector<study::FocusError>& rows, const std::arr
                 "which no step is small enough to mend.",
             .x = {.label = "step", .unit = "R", .log = true},
             .y = {.label = "focus error", .unit = "R", .log = true},
-            .slopes = {{.order = 1, .series = 0}, {.order = 2, .series = 2}},
-            .lines = {{.at = 0.087, .label = "limit of Fig. 4"}}};
+            .slopes = {{.order = 1, .series = 0}, {.order = 2, .series = 2}}};
   Table focus{.id = "luneburg", .title = "The same in numbers", .columns = {{"step", "R"}}};
   Table angle{
       .id = "refraction",

@@ -56,7 +56,7 @@ Table overview(const PaperStudy& s) {
   add("L_t is left behind",
       line("%.3g times the light is deposited at a step of %g", s.attenuation[2].deposited_printed,
            s.attenuation[2].step),
-      "P (1 - e^-s) w", line("%.3g times, at any step", s.attenuation[2].deposited));
+      "P (1 - e^-s) w", line("%.3g times the light, at any step", s.attenuation[2].deposited));
   add("one relaxation time for all moments",
       line("fluence around a lamp %s off, most on the diagonals", percent(s.directions.error[0]).c_str()),
       "two, (1/p1 - 1/2)(1/p2 - 1/2) = 1/4",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers the active blocks of a domain, x fastest, and finds the neighbours over their six faces.
+// Numbers the active blocks of a domain along a Morton curve, so that neighbours lie close in memory, and finds the neighbours
+// over their six faces.
 #include "volumes/block_grid.h"
 
 #include <algorithm>

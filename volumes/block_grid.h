@@ -13,7 +13,7 @@ namespace turbid {
 
 class BlockGrid {
  public:
-  /// `active` is asked for every block coordinate of the domain, x fastest. `periodic[axis]` wraps neighbours.
+  /// `active` is asked for every block coordinate of the domain once. `periodic[axis]` wraps neighbours.
   BlockGrid(glm::ivec3 blocks, int edge, const std::function<bool(glm::ivec3)>& active,
             std::array<bool, 3> periodic = {false, false, false});
 

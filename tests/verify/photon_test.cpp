@@ -182,7 +182,7 @@ TEST(PhotonEquilibrium, InAClosedBoxTheFluenceFollowsTheSquareOfTheIndex) {
   test::add_body(scene, make_sphere(2, test::at({13, 2.5f, 2.5f})), milk(0, 0, 1.2f));
   test::add_body(scene, make_box({4, 100, 100}, test::at({0, 8, 8})),
                  test::make_material({.sigma_s = glm::vec3(0.3f), .sigma_a = glm::vec3(0.1f), .emission = glm::vec3(0.169f), .eta = 1.3f}));
-  const auto answer = follow(scene, photons(200000), LightList{});
+  const auto answer = follow(scene, photons(600000), LightList{});
   double mean[5] = {}, count[5] = {};
   for (std::size_t at = 0; at < answer.region.size(); ++at) {
     const glm::vec3 x = 0.5f * (glm::vec3(answer.voxel(at)) + 0.5f) - 8.0f;
@@ -194,11 +194,11 @@ TEST(PhotonEquilibrium, InAClosedBoxTheFluenceFollowsTheSquareOfTheIndex) {
     count[part] += 1;
   }
   // A voxel emits by whom its centre belongs to, as for the other solvers: 0.8 % too much for this ball, all of it in the
-  // half of its volume next to the surface. Statistical errors are 0.002.
+  // half of its volume next to the surface. Statistical errors are 0.001.
   EXPECT_NEAR(mean[0] / count[0], 1.0, 0.008);
   EXPECT_NEAR(mean[1] / count[1], 2.25, 0.02);
   EXPECT_NEAR(mean[4] / count[4], 2.25, 0.06);
-  EXPECT_NEAR(mean[2] / count[2], 1.44, 0.03);  // few photons meet the clear ball
+  EXPECT_NEAR(mean[2] / count[2], 1.44, 0.045);  // few photons meet the clear ball: 0.017 is its standard error
   EXPECT_NEAR(mean[3] / count[3], 1.69, 0.015);
   expect_balance(answer.solution);
 }

@@ -95,9 +95,10 @@ std::vector<EnergyCase> energy_cases() {
 
 TEST(EnergyBalance, ClosesForEveryKindOfMediumAndBothSolvers) {
   for (const EnergyCase& c : energy_cases()) {
-    for (const char* solver : {"steady", "lattice"}) {
+    for (const char* solver : {"steady", "lattice", "global lattice"}) {
       SolverSettings settings;
-      settings.solver = solver;
+      settings.solver = solver == std::string("steady") ? "steady" : "lattice";
+      if (solver == std::string("global lattice")) settings.lattice.block_edge = 0;
       settings.lattice.tolerance = 1e-3f;  // the balance holds at any stage: what is still on its way is counted
       const test::Run run = test::run(c.scene, c.lights, settings);
       const EnergyBalance& e = run.energy();
@@ -219,9 +220,10 @@ std::uint64_t fingerprint() {
   };
   for (const EnergyCase& c : energy_cases()) {
     if (c.name != std::string("nested") && c.name != std::string("heterogeneous")) continue;
-    for (const char* solver : {"steady", "lattice"}) {
+    for (const char* solver : {"steady", "lattice", "global lattice"}) {
       SolverSettings settings;
-      settings.solver = solver;
+      settings.solver = solver == std::string("steady") ? "steady" : "lattice";
+      if (solver == std::string("global lattice")) settings.lattice.block_edge = 0;
       settings.lattice.tolerance = 1e-3f;
       const test::Run run = test::run(c.scene, c.lights, settings);
       add(run.solution.volume.fluence.data(), 4 * run.solution.volume.fluence.size());

@@ -3,11 +3,20 @@
 #include "host/bench/goals.h"
 
 #include "host/bench/measure_frame.h"
+#include "host/bench/measure_rays.h"
 
 namespace turbid {
 
+namespace {
+
+std::vector<Goal> rays(cl::Session& session, const BenchSettings& settings) {
+  return settings.quick ? measure_rays(session, 32, 3) : measure_rays(session);
+}
+
+}  // namespace
+
 const std::vector<GoalFamily>& goal_families() {
-  static const std::vector<GoalFamily> list{{"frame", measure_frame}};
+  static const std::vector<GoalFamily> list{{"rays", rays}, {"frame", measure_frame}};
   return list;
 }
 

@@ -17,7 +17,7 @@ kernel void follow_path(MEDIUM_ARGUMENTS, global float* rays, float step_size, i
   int surfaces = (int)data[8], face = -1;
   for (int i = 0; i < steps; ++i) {
     const int region = ray.region;
-    const Step step = advance(&medium, &ray, step_size);
+    const Step step = advance(&medium, &ray, step_size, 0.0f);
     arc += step.length;
     if (step.event == EVENT_FACE) {
       face = step.face;

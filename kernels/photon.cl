@@ -129,7 +129,7 @@ static bool follow(Photon* photon, const Medium* medium, const PhotonParams* p, 
       collides = true;
     }
   }
-  Step step = advance(medium, ray, arc * per_arc);
+  Step step = advance(medium, ray, arc * per_arc, 0.0f);
   if (p->ground_size > 0 && region == 0 && from.y > p->ground_height && ray->x.y <= p->ground_height) {
     // The ground cuts through the domain: the path ends there.
     const float part = (from.y - p->ground_height) / (from.y - ray->x.y);

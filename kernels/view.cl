@@ -5,8 +5,15 @@
 // Along a path radiance / eta^2 is invariant but for extinction and sources (numerics section 7):
 //     L_obs = eta_obs^2 * integral of Tr j / eta^2 ds,    j = (sigma_s fluence + deposit + emission) / (4 pi)
 // with the source constant over a step ds:  Tr j (1 - exp(-sigma_t ds)) / sigma_t.
+//
+// A work-item follows TURBID_INTERLEAVE camera samples in turn, one step each, like march.cl.
+#include "lib/gather.h"
 #include "lib/surroundings.h"
 #include "lib/trace.h"
+
+#if !defined(TURBID_INTERLEAVE) || !defined(TURBID_SAMPLES_PER_CLAIM)
+#error "TURBID_INTERLEAVE and TURBID_SAMPLES_PER_CLAIM must be defined"
+#endif
 
 #define STACK 16
 
@@ -15,32 +22,22 @@ typedef struct {
   Colour weight;  // Tr, Fresnel factors and eta_obs^2, of radiance / eta^2
 } Branch;
 
-#if TURBID_CHANNELS == 3
-static float3 colour_rgb(Colour c, const ViewParams* p) { return c.xyz; }
-#else
-static float3 colour_rgb(Colour c, const ViewParams* p) { return (float3)(c); }
-#endif
+// A camera sample: the branch it follows and those that wait.
+typedef struct {
+  Branch now;
+  Place place;
+  Colour gathered;
+  float3 surfaces;
+  int index;  // of the sample; < 0: none
+  int steps, met, stacked;
+  Branch stack[STACK];
+} Path;
 
-// Source of radiance 4 pi j at a point of a region [W/unit^2 per voxel].
-static Colour source_at(const Medium* medium, const global float* source_tiles, int region, Cell cell) {
-#if TURBID_SCATTERING
-  const int set = medium->regions[region].source_set;
-  const int tile = set >= 0 ? tile_of(medium, set, cell.block) : -1;
-  if (tile >= 0) {
 #if TURBID_CHANNELS == 3
-    return interpolate4(source_tiles, tile, cell);
+static float3 colour_rgb(Colour c) { return c.xyz; }
 #else
-    const global float* at = source_tiles + (size_t)tile * TURBID_TILE_NODES + cell.node;
-    const float2 a = vload2(0, at), b = vload2(0, at + TURBID_TILE_EDGE);
-    const float2 c = vload2(0, at + TURBID_TILE_EDGE * TURBID_TILE_EDGE);
-    const float2 d = vload2(0, at + TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1));
-    const float2 row = mix(mix(a, b, cell.fraction.y), mix(c, d, cell.fraction.y), cell.fraction.z);
-    return mix(row.x, row.y, cell.fraction.x);
+static float3 colour_rgb(Colour c) { return (float3)(c); }
 #endif
-  }
-#endif
-  return colour_of(0.0f, 0.0f, 0.0f);
-}
 
 static float3 opaque_radiance(const Medium* medium, const Surroundings* s, const ViewParams* p, int region, float3 x,
                               float3 normal) {
@@ -53,9 +50,10 @@ static float3 opaque_radiance(const Medium* medium, const Surroundings* s, const
   return reflectance * direct_irradiance(s, p, x, normal, 1.0f) * M_1_PI_F;
 }
 
-// Splits a branch at an interface: the stronger part goes on as *branch, the weaker one is stacked while there is room.
-static void split(Branch* branch, Branch* stack, int* stacked, float3 normal, float eta_from, float eta_to, int next_region,
-                  float3 beyond, float grace, float min_weight, int room) {
+// Splits the path at an interface: the stronger part goes on, the weaker one is stacked while there is room.
+static void split(Path* path, float3 normal, float eta_from, float eta_to, int next_region, float3 beyond, float grace,
+                  float min_weight, int room) {
+  const Branch* branch = &path->now;
   const float3 direction = branch->ray.v * rsqrt(dot(branch->ray.v, branch->ray.v));
   const Interface surface = meet_interface(direction, normal, eta_from, eta_to);
   Branch reflected = *branch, refracted = *branch;
@@ -69,107 +67,172 @@ static void split(Branch* branch, Branch* stack, int* stacked, float3 normal, fl
   refracted.ray.grace = grace;
   const bool keep_reflected = surface.reflectance > 0.5f;
   const Branch weaker = keep_reflected ? refracted : reflected;
-  *branch = keep_reflected ? reflected : refracted;
-  if (*stacked < room && colour_max(weaker.weight) >= min_weight) stack[(*stacked)++] = weaker;
+  path->now = keep_reflected ? reflected : refracted;
+  if (path->stacked < room && colour_max(weaker.weight) >= min_weight) path->stack[path->stacked++] = weaker;
 }
 
-kernel void view(MEDIUM_ARGUMENTS, ViewParams p, const global ViewSample* samples, const global float* source_tiles,
-                 const global LightParams* lights, const global float* shadow_depths, const global float* transmittance,
-                 const global float* ground_map, global float* radiance) {
-  const int index = get_global_id(0);
-  if (index >= p.sample_count) return;
-  const Medium medium = MEDIUM_FROM_ARGUMENTS;
-  const Surroundings around = {lights, shadow_depths, transmittance, ground_map};
-  const global ViewSample* sample = samples + index;
+// Nothing is known of where the branch is.
+static void forget_place(Place* place) {
+  place->block = -1;
+  place->room = 0.0f;
+  place->least_room = 1.0f;
+}
+
+// The branch has ended: the one stacked last goes on, or the sample is done.
+static void next_branch(Path* path, const ViewParams* p, global float* radiance) {
+  if (path->stacked > 0) {
+    path->now = path->stack[--path->stacked];
+    forget_place(&path->place);
+    return;
+  }
+  global float* at = radiance + 8 * path->index;
+  vstore3(path->surfaces, 0, at);
+  at[3] = (float)path->steps;  // for profiles
+  const float3 media = colour_rgb(path->gathered) * (TURBID_CHANNELS == 3 ? (float3)(1.0f) : vload3(0, p->tint));
+  vstore3(media, 0, at + 4);
+  path->index = -1;
+}
+
+static void begin(Path* path, const Medium* medium, const Surroundings* around, const ViewParams* p,
+                  const global ViewSample* sample, int index, global float* radiance) {
   const float3 start = vload3(0, sample->position);
   const float3 direction = vload3(0, sample->direction);
-  float3 surfaces = (float3)(0.0f);
-  Colour gathered = colour_of(0.0f, 0.0f, 0.0f);
-  Branch stack[STACK];
-  int stacked = 0, met = 0;
-  const float eta_observer = medium.regions[0].eta;
-
+  const float eta_observer = medium->regions[0].eta;
+  path->index = index;
+  path->surfaces = (float3)(0.0f);
+  path->gathered = colour_of(0.0f, 0.0f, 0.0f);
+  path->steps = path->met = path->stacked = 0;
+  forget_place(&path->place);
   if (sample->region < 0) {
-    surfaces = surroundings_radiance(&around, &p, start, direction);
-  } else if (medium.regions[sample->region].opaque) {
-    surfaces = opaque_radiance(&medium, &around, &p, sample->region, start, vload3(0, sample->normal));
-  } else {
-    Branch first;
-    first.ray.x = start;
-    first.ray.region = sample->region;
-    first.ray.grace = 1.5f;
-    first.weight = colour_of(1.0f, 1.0f, 1.0f) * (eta_observer * eta_observer);
-    const float eta = eta_at(&medium, sample->region, locate(start));
-    first.ray.v = direction * eta;
-    if (sample->entering && !index_matched(&medium, 0, sample->region, eta_observer, eta)) {
-      first.ray.region = 0;
-      first.ray.v = direction * eta_observer;
-      split(&first, stack, &stacked, vload3(0, sample->normal), eta_observer, eta, sample->region, start, 1.5f,
-            p.min_weight, STACK);
-    }
-    stack[stacked++] = first;
+    path->surfaces = surroundings_radiance(around, p, start, direction);
+    next_branch(path, p, radiance);
+    return;
   }
+  if (medium->regions[sample->region].opaque) {
+    path->surfaces = opaque_radiance(medium, around, p, sample->region, start, vload3(0, sample->normal));
+    next_branch(path, p, radiance);
+    return;
+  }
+  Branch* first = &path->now;
+  first->ray.x = start;
+  first->ray.region = sample->region;
+  first->ray.grace = 1.5f;
+  first->weight = colour_of(1.0f, 1.0f, 1.0f) * (eta_observer * eta_observer);
+  const float eta = eta_at(medium, sample->region, locate(start));
+  first->ray.v = direction * eta;
+  if (sample->entering && !index_matched(medium, 0, sample->region, eta_observer, eta)) {
+    first->ray.region = 0;
+    first->ray.v = direction * eta_observer;
+    split(path, vload3(0, sample->normal), eta_observer, eta, sample->region, start, 1.5f, p->min_weight, STACK);
+  }
+}
 
-  int steps = 0;
-  while (stacked > 0) {
-    Branch branch = stack[--stacked];
-    while (steps < p.max_steps) {
-      ++steps;
-      const int region = branch.ray.region;
-      const float3 from = branch.ray.x;
-      const Step step = advance(&medium, &branch.ray, p.step);
-      const float3 heading = (branch.ray.x - from) / fmax(step.length, 1e-9f);
-      if (region == 0 && p.ground) {
-        const float t = distance_to_ground(&p, from, heading);
-        if (t <= step.length) {
-          surfaces += colour_rgb(branch.weight, &p) / (eta_observer * eta_observer) *
-                      ground_radiance(&around, &p, from + t * heading, heading);
-          break;
-        }
-      }
-      const Cell middle = locate(step.middle);
-      if (medium.regions[region].source_set >= 0 || medium.regions[region].attenuates) {
-        const Extinction sigma = extinction_at(&medium, region, middle);
-        const Colour sigma_t = sigma.sigma_s + sigma.sigma_a;
-        const Colour depth = sigma_t * step.length;
-        const Colour source = source_at(&medium, source_tiles, region, middle);
-        const float eta = eta_at(&medium, region, middle);
-        const Colour lost = -expm1(-depth);
-        const Colour path = depth > 1e-4f ? lost / fmax(sigma_t, 1e-20f) : step.length * (1.0f - 0.5f * depth);
-        gathered += branch.weight * source * path * (0.25f * M_1_PI_F / (eta * eta));
-        branch.weight *= 1.0f - lost;
-        if (colour_max(branch.weight) < p.min_weight) break;
-      }
-      if (step.event == EVENT_FACE) {
-        surfaces += colour_rgb(branch.weight, &p) / (eta_observer * eta_observer) *
-                    surroundings_radiance(&around, &p, branch.ray.x, normalize(branch.ray.v));
-        break;
-      }
-      if (step.event == EVENT_SURFACE) {
-        const int next_region = step.next_region;
-        if (medium.regions[next_region].opaque) {
-          const float3 normal = surface_normal(&medium, step.surface, step.beyond);
-          surfaces += colour_rgb(branch.weight, &p) / (eta_observer * eta_observer) *
-                      opaque_radiance(&medium, &around, &p, next_region, branch.ray.x, normal);
-          break;
-        }
-        const float eta_from = length(branch.ray.v);
-        const float eta_to = eta_at(&medium, next_region, locate(step.beyond));
-        if (index_matched(&medium, region, next_region, eta_from, eta_to)) {
-          branch.ray.x = step.beyond;
-          branch.ray.region = next_region;
-          continue;
-        }
-        if (++met > 8 * p.max_branches) break;
-        const float3 normal = surface_normal(&medium, step.surface, step.beyond);
-        split(&branch, stack, &stacked, normal, eta_from, eta_to, next_region, step.beyond, GRACE, p.min_weight,
-              met <= p.max_branches ? STACK : 0);
-        if (colour_max(branch.weight) < p.min_weight) break;
-      }
+// At another region's surface. False: the branch has ended there.
+static bool meet_surface(Path* path, const Medium* medium, const Surroundings* around, const ViewParams* p,
+                         const Step* step) {
+  Branch* branch = &path->now;
+  const int next_region = step->next_region;
+  if (medium->regions[next_region].opaque) {
+    const float eta_observer = medium->regions[0].eta;
+    const float3 normal = surface_normal(medium, step->surface, step->beyond);
+    path->surfaces += colour_rgb(branch->weight) / (eta_observer * eta_observer) *
+                      opaque_radiance(medium, around, p, next_region, branch->ray.x, normal);
+    return false;
+  }
+  const float eta_from = length(branch->ray.v);
+  const float eta_to = eta_at(medium, next_region, locate(step->beyond));
+  if (index_matched(medium, branch->ray.region, next_region, eta_from, eta_to)) {
+    branch->ray.x = step->beyond;
+    branch->ray.region = next_region;
+    return true;
+  }
+  if (++path->met > 8 * p->max_branches) return false;
+  const float3 normal = surface_normal(medium, step->surface, step->beyond);
+  split(path, normal, eta_from, eta_to, next_region, step->beyond, GRACE, p->min_weight,
+        path->met <= p->max_branches ? STACK : 0);
+  return colour_max(path->now.weight) >= p->min_weight;
+}
+
+// One step of any kind. False: the branch has ended.
+static bool step_with_care(Path* path, const Medium* medium, const Surroundings* around, const ViewParams* p,
+                           const global float* source_tiles) {
+  Branch* branch = &path->now;
+  const int region = branch->ray.region;
+  const float3 from = branch->ray.x;
+  const float eta_observer = medium->regions[0].eta;
+  const Step step = advance(medium, &branch->ray, p->step, path->place.room);
+  const float3 heading = (branch->ray.x - from) / fmax(step.length, 1e-9f);
+  if (region == 0 && p->ground) {
+    const float t = distance_to_ground(p, from, heading);
+    if (t <= step.length) {
+      path->surfaces += colour_rgb(branch->weight) / (eta_observer * eta_observer) *
+                        ground_radiance(around, p, from + t * heading, heading);
+      return false;
     }
   }
-  vstore3(surfaces, 0, radiance + 8 * index);
-  radiance[8 * index + 3] = (float)steps;  // for profiles
-  const float3 media = colour_rgb(gathered, &p) * (TURBID_CHANNELS == 3 ? (float3)(1.0f) : vload3(0, p.tint));
-  vstore3(media, 0, radiance + 8 * index + 4);
+  const int set = medium->regions[region].source_set;
+  if (set >= 0 || medium->regions[region].attenuates) {
+    const Cell middle = locate(step.middle);
+    const Colour source = source_in(source_tiles, set >= 0 ? tile_of(medium, set, middle.block) : -1, middle);
+    gather(&path->gathered, &branch->weight, extinction_at(medium, region, middle), source, step.length, step.eta_squared);
+    if (colour_max(branch->weight) < p->min_weight) return false;
+  }
+  if (step.event == EVENT_FACE) {
+    path->surfaces += colour_rgb(branch->weight) / (eta_observer * eta_observer) *
+                      surroundings_radiance(around, p, branch->ray.x, normalize(branch->ray.v));
+    return false;
+  }
+  if (step.event == EVENT_SURFACE && !meet_surface(path, medium, around, p, &step)) return false;
+  look_around(medium, &branch->ray, p->step, step.event == EVENT_NONE ? step.room : 0.0f, &path->place);
+  if (p->ground && branch->ray.region == 0) {
+    path->place.room = fmin(path->place.room, fabs(branch->ray.x.y - p->ground_height) - 0.01f);
+  }
+  return true;
+}
+
+// Work-items claim samples a few at a time until none is left; `claims` counts from 0 in each launch.
+kernel void view(MEDIUM_ARGUMENTS, ViewParams p, const global ViewSample* samples, global int* claims,
+                 const global float* source_tiles, const global LightParams* lights, const global float* shadow_depths,
+                 const global float* transmittance, const global float* ground_map, global float* radiance) {
+  const Medium medium = MEDIUM_FROM_ARGUMENTS;
+  const Surroundings around = {lights, shadow_depths, transmittance, ground_map};
+  Path paths[TURBID_INTERLEAVE];
+  for (int i = 0; i < TURBID_INTERLEAVE; ++i) paths[i].index = -1;
+  int claimed = 0, claim_end = 0;
+  bool busy = true;
+  while (busy) {
+    busy = false;
+    for (int i = 0; i < TURBID_INTERLEAVE; ++i) {
+      Path* path = paths + i;
+      if (path->index < 0) {
+        if (claimed == claim_end) {
+          claimed = min(atomic_add(claims, TURBID_SAMPLES_PER_CLAIM), p.sample_count);
+          claim_end = min(claimed + TURBID_SAMPLES_PER_CLAIM, p.sample_count);
+          if (claimed == claim_end) continue;
+        }
+        begin(path, &medium, &around, &p, samples + claimed, claimed, radiance);
+        ++claimed;
+        busy = true;
+        continue;
+      }
+      busy = true;
+      bool goes_on = path->steps < p.max_steps;
+      if (goes_on) {
+        ++path->steps;
+        Stride stride;
+        Branch* branch = &path->now;
+        if (glide(&medium, &branch->ray, &path->place, p.step, &stride)) {
+          const int region = branch->ray.region;
+          if (medium.regions[region].source_set < 0 && !medium.regions[region].attenuates) continue;
+          const Extinction sigma = extinction_in(&medium, region, path->place.coefficient_tile, stride.cell);
+          const Colour source = source_in(source_tiles, path->place.source_tile, stride.cell);
+          gather(&path->gathered, &branch->weight, sigma, source, stride.length, stride.eta_squared);
+          goes_on = colour_max(branch->weight) >= p.min_weight;
+        } else {
+          goes_on = step_with_care(path, &medium, &around, &p, source_tiles);
+        }
+      }
+      if (!goes_on) next_branch(path, &p, radiance);
+    }
+  }
 }

@@ -12,6 +12,7 @@ using Work = std::function<void()>;
 void add_render(CLI::App& program, Work& work);
 void add_solve(CLI::App& program, Work& work);
 void add_voxelise(CLI::App& program, Work& work);
+void add_view(CLI::App& program, Work& work);
 void add_check(CLI::App& program, Work& work);
 void add_devices(CLI::App& program, Work& work);
 void add_info(CLI::App& program, Work& work);

@@ -66,8 +66,8 @@ void run(int argc, const char* const* argv) {
       "Exit status: 0 done, 1 failed its own check, 2 bad input, 3 device, 130 interrupted.");
   program.require_subcommand(1);
   Work work;
-  for (const auto add : {add_render, add_solve, add_voxelise, add_check, add_devices, add_info, add_compare, add_profile,
-                         add_verify})
+  for (const auto add : {add_render, add_solve, add_voxelise, add_view, add_check, add_devices, add_info, add_compare,
+                         add_profile, add_verify})
     add(program, work);
   require_command(program, argc, argv);
   if (parse(program, argc, argv)) work();

@@ -12,9 +12,6 @@
 
 namespace turbid::app {
 
-/// Largest relative energy imbalance that a run may have [-].
-inline constexpr double kAllowedImbalance = 1e-4;
-
 /// A scene on its grid, looked over.
 struct VoxelisedScene : SceneOnGrid {
   MediumSurvey survey;

@@ -11,6 +11,7 @@
 #include "host/base/errors.h"
 #include "host/report/checksum.h"
 #include "host/report/run_report.h"
+#include "host/study/picture_metadata.h"
 #include "host/study/run_warnings.h"
 
 namespace turbid::app {
@@ -19,21 +20,6 @@ namespace {
 struct RenderOptions : SceneOptions {
   std::string output;
 };
-
-ImageMetadata metadata_of(const VoxelisedScene& in, const cl::DeviceInfo& device, const SolverReport& solver,
-                          const Progress& progress) {
-  ImageMetadata metadata;
-  metadata.text = {{"turbid:version", TURBID_VERSION},   {"turbid:scene", in.scene.name},
-                   {"turbid:scene_hash", in.scene.hash}, {"turbid:unit", in.scene.unit},
-                   {"turbid:device", device.label()},    {"turbid:driver", device.driver},
-                   {"turbid:solver", solver.solver}};
-  metadata.numbers = {{"turbid:voxel_size", in.scene.medium.frame.voxel_size},
-                      {"turbid:error_estimate", static_cast<float>(solver.error_estimate)},
-                      {"turbid:energy_imbalance", static_cast<float>(solver.energy.imbalance())}};
-  for (const StageTime& stage : progress.times())
-    metadata.numbers["turbid:seconds:" + stage.name] += static_cast<float>(stage.seconds);
-  return metadata;
-}
 
 std::size_t pixels_not_finite(const ViewImage& image) {
   std::size_t count = 0;
@@ -60,7 +46,7 @@ void render(const RenderOptions& options) {
   progress.stage("write");
   const FolderInUse folder(output.folder);
   const float exposure = in.scene.film.exposure ? *in.scene.film.exposure : automatic_exposure(image);
-  write_exr(image, metadata_of(in, choice.device, solution.report, progress), output.exr);
+  write_exr(image, picture_metadata(in, choice.device, solution.report, progress.times()), output.exr);
   write_png_preview(image, exposure, output.png);
   progress.finish();
   RunReport report = run_report(in, choice, solution, progress);

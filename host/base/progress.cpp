@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 #include "host/base/errors.h"
 
@@ -60,7 +61,14 @@ void Progress::stage(const std::string& name) {
   current_ = name;
   if (watcher_) watcher_(name);
   started_ = last_drawn_ = wall_time();
+  if (update_watcher_) update_watcher_(name, 0);
   draw(0);
+}
+
+std::vector<StageTime> Progress::take_times() {
+  clear_bar();
+  current_.clear();
+  return std::exchange(times_, {});
 }
 
 void Progress::update(double fraction) {
@@ -68,6 +76,7 @@ void Progress::update(double fraction) {
     clear_bar();
     throw Interrupted(stop_sentence(current_.empty() ? "between two stages" : "during " + current_, times_));
   }
+  if (update_watcher_ && !current_.empty()) update_watcher_(current_, fraction);
   const double now = wall_time();
   if (!terminal_ || current_.empty() || now - last_drawn_ < kRedraw) return;
   last_drawn_ = now;

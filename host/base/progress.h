@@ -29,6 +29,10 @@ class Progress {
   void finish();
   /// Called with each stage's name as it begins, and with "" when it ends.
   void watch(std::function<void(const std::string&)> watcher) { watcher_ = std::move(watcher); }
+  /// Called with the current stage and the fraction of it that is done; may throw Interrupted to stop it.
+  void on_update(std::function<void(const std::string&, double)> watcher) { update_watcher_ = std::move(watcher); }
+  /// The times so far, which are forgotten here; a stage that was left by an exception is forgotten too.
+  std::vector<StageTime> take_times();
   void warn(const std::string& sentence);
   /// Shown only with -v.
   void detail(const std::string& line);
@@ -46,6 +50,7 @@ class Progress {
   bool bar_shown_ = false;
   std::string current_;
   std::function<void(const std::string&)> watcher_;
+  std::function<void(const std::string&, double)> update_watcher_;
   double started_ = 0;
   double last_drawn_ = 0;
   std::vector<StageTime> times_;

@@ -23,6 +23,8 @@ const std::vector<FieldKernel>& field_kernels() {
   static const std::vector<FieldKernel> table{
       {"sweep", "source", 50, "inner", {"populations", "fluence"},
        "per voxel, colour and inner step: 5 sums of populations, 3 for phi', 3 x 14 for even and odd parts"},
+      {"step_in_place", "source", 45, nullptr, {"slots"}, "per place: 5 sums of populations, 2 for phi', 3 x 12 for even and odd parts"},
+      {"exchange", "lost", 6, nullptr, {}, "per face and colour: two weighted sums of two"},
       {"balance", "source", 64, nullptr, {}, "one lattice step, and 14 for sums of absorbed and escaped power"},
       {"smooth_down", "b", 13, "sweeps", {}, "per voxel, colour and sweep: six products and sums, the scaling"},
       {"smooth_up", "b", 13, "sweeps", {}, "per voxel, colour and sweep: six products and sums, the scaling"},

@@ -32,10 +32,10 @@ void keep_sections(Reading& reading, const Scene& before, const std::string& hea
 /// Coefficients whose text stayed keep their fields, which may be large or slow to evaluate.
 void keep_fields(Material& material, const Material& before, const SceneSection& now, const SceneSection& then) {
   const std::pair<const char*, FieldPtr Material::*> members[] = {{"eta", &Material::eta},
-                                                                   {"sigma_s", &Material::sigma_s},
-                                                                   {"sigma_a", &Material::sigma_a},
-                                                                   {"g", &Material::g},
-                                                                   {"emission", &Material::emission}};
+                                                                  {"sigma_s", &Material::sigma_s},
+                                                                  {"sigma_a", &Material::sigma_a},
+                                                                  {"g", &Material::g},
+                                                                  {"emission", &Material::emission}};
   for (const auto& [key, member] : members)
     for (const SceneEntry& entry : now.entries)
       if (entry.key == key && std::find(then.entries.begin(), then.entries.end(), entry) != then.entries.end())

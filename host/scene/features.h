@@ -21,6 +21,8 @@ struct SceneFeatures {
   int channels = 3;            ///< 1 when all coefficients are grey and all lights have one colour ratio, else 3
   glm::vec3 tint{1};           ///< colour of that one channel; (1, 1, 1) with 3 channels
 
+  bool operator==(const SceneFeatures&) const = default;
+
   /// The colour that a grey scene's one channel is computed for: the brightest of the tint, whose value there is 1.
   int first_colour() const;
   /// A power of the lights or of emission in the channels computed.

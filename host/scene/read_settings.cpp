@@ -38,8 +38,10 @@ LatticeSettings read_lattice(const TableReader& table, float tolerance) {
                                                 {"trapezoid", CollisionVariant::trapezoid},
                                                 {"trt", CollisionVariant::trt}},
                                                "trt");
-  s.block_edge = count(table, "block_edge", 4, 8, s.block_edge);
-  if (s.block_edge != 4 && s.block_edge != 8) table.fail("block_edge", "must be 4 or 8 [voxels]");
+  s.block_edge = count(table, "block_edge", 0, 8, s.block_edge);
+  if (s.block_edge != 0 && s.block_edge != 4 && s.block_edge != 8) {
+    table.fail("block_edge", "must be 4 or 8 [voxels], or 0 for one global lattice");
+  }
   s.inner_iterations = count(table, "inner_iterations", 1, 1024, s.inner_iterations);
   s.sweeps_per_batch = count(table, "sweeps_per_batch", 0, 1 << 20, s.sweeps_per_batch);
   s.max_sweeps = count(table, "max_sweeps", 1, 1 << 30, s.max_sweeps);

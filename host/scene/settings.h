@@ -19,10 +19,10 @@ enum class CollisionVariant { paper, exponential, trapezoid, trt };
 
 struct LatticeSettings {
   CollisionVariant collision = CollisionVariant::trt;
-  int block_edge = 8;               ///< 4 or 8 voxels
-  int inner_iterations = 8;         ///< steps m inside a block between two exchanges of interfaces; >= 1
-  int sweeps_per_batch = 4;         ///< exchanges while the next batch of rays marches; >= 0
-  int max_sweeps = 20000;           ///< exchanges at the most; >= 1
+  int block_edge = 8;               ///< 4 or 8 voxels; 0: no blocks, one global lattice of single steps in place
+  int inner_iterations = 8;         ///< steps m inside a block between two exchanges of interfaces; >= 1; unused without blocks
+  int sweeps_per_batch = 4;         ///< exchanges (global: steps) while the next batch of rays marches; >= 0
+  int max_sweeps = 20000;           ///< exchanges (global: steps) at the most; >= 1
   float tolerance = 1e-4f;          ///< estimated relative error of the fluence, in [1e-6, 0.1]
 };
 

@@ -17,6 +17,9 @@
 
 namespace turbid {
 
+/// Largest relative energy imbalance that a run may have [-].
+inline constexpr double kAllowedImbalance = 1e-4;
+
 /// A scene with its medium as voxels.
 struct SceneOnGrid {
   Scene scene;

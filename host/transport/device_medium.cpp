@@ -108,7 +108,8 @@ void for_each_tile(const TileMaps& maps, int set, int blocks, const Fill& fill) 
   });
 }
 
-void copy(const glm::vec3& from, float (&to)[3]) {
+template <std::size_t n>
+void copy(const glm::vec3& from, float (&to)[n]) {
   for (int i = 0; i < 3; ++i) to[i] = from[i];
 }
 

@@ -6,21 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
-
-#include "host/base/errors.h"
 
 namespace turbid {
 namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
-constexpr int kSweepsPerTest = 4;
-constexpr double kRounding = 1e-7;
 
 }  // namespace
 
 Lattice::Lattice(cl::Session& session, const DiffusionMedium& diffusion, const LatticeSettings& settings)
-    : session_(session), diffusion_(diffusion), settings_(settings), medium_(make_lattice_medium(diffusion, settings)),
+    : LatticeScheme(diffusion, settings), session_(session), medium_(make_lattice_medium(diffusion, settings)),
       channels_(diffusion.channels), blocks_(medium_.blocks.count()) {
   program_ = session.build("lattice.cl", {{"TURBID_EDGE", settings.block_edge},
                                           {"TURBID_COLLISION", static_cast<long>(settings.collision)}});
@@ -97,39 +92,6 @@ Lattice::Change Lattice::read_change() {
     if (total > 0) result.relative = std::max(result.relative, change / total);
   }
   return result;
-}
-
-double Lattice::largest_s() const {
-  return diffusion_.s.empty() ? 0.0 : *std::max_element(diffusion_.s.begin(), diffusion_.s.end());
-}
-
-double Lattice::relax(const std::function<void(double)>& progress) {
-  double previous = 0, estimate = 1;
-  int small = 0;
-  while (sweeps() < settings_.max_sweeps && blocks_ > 0) {
-    enqueue_sweeps(kSweepsPerTest);
-    const double change = read_change().relative;
-    if (change < kRounding) {
-      // As steady as single precision can be: the ratio of successive changes means nothing any more.
-      estimate = change;
-      break;
-    }
-    if (!std::isfinite(change) || change > 1e6) {
-      throw InputError("lattice: the collision diverges: optical thickness per voxel up to " + std::to_string(largest_s()) +
-                       ", stable to 2 with collision = \"paper\"; raise the resolution or use collision = \"trt\"");
-    }
-    // rho per sweep from changes that lie kSweepsPerTest sweeps apart.
-    const double rho = previous > 0 ? std::min(std::pow(change / previous, 1.0 / kSweepsPerTest), 0.999999) : 0.999999;
-    previous = change;
-    estimate = change * rho / (1.0 - rho);
-    if (progress) progress(std::clamp(std::log(estimate) / std::log(settings_.tolerance), 0.0, 1.0));
-    // Twice in a row: one lucky ratio must not stop it.
-    small = estimate < settings_.tolerance ? small + 1 : 0;
-    if (small == 2) break;
-  }
-  // One plain step, after which interfaces and populations belong together and the energy of a step can be told exactly.
-  enqueue_sweeps(1, 1);
-  return estimate;
 }
 
 std::vector<float> Lattice::read_fluence() {

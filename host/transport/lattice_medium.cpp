@@ -28,11 +28,14 @@ std::vector<std::uint32_t> origins(const DiffusionMedium& medium, const BlockGri
   return origin;
 }
 
-/// What crosses each of a voxel's six faces inwards: population i arrives over face i.
-struct Link {
-  float own[6] = {0, 0, 0, 0, 0, 0};    ///< share of what left through that face which comes back
-  float other[6] = {1, 1, 1, 1, 1, 1};  ///< share of what the neighbour sent
-};
+bool plain(const Link& link) {
+  for (int i = 0; i < 6; ++i) {
+    if (link.own[i] != 0.0f || link.other[i] != 1.0f) return false;
+  }
+  return true;
+}
+
+}  // namespace
 
 /// Index of population whose arrivals come over a face: faces -x, +x, ... bring populations +x, -x, ... which are numbered
 /// 0, 1, ... alike.
@@ -84,15 +87,6 @@ std::vector<Link> voxel_links(const DiffusionMedium& medium, int channel) {
   }
   return links;
 }
-
-bool plain(const Link& link) {
-  for (int i = 0; i < 6; ++i) {
-    if (link.own[i] != 0.0f || link.other[i] != 1.0f) return false;
-  }
-  return true;
-}
-
-}  // namespace
 
 Collision collision_coefficients(CollisionVariant variant, double s, double s_a) {
   Collision k;

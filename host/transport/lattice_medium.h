@@ -33,6 +33,14 @@ struct LatticeMedium {
   std::size_t stride() const { return static_cast<std::size_t>(blocks.count()) * voxels(); }
 };
 
+/// What crosses each of a voxel's six faces inwards: population i arrives over face i.
+struct Link {
+  float own[6] = {0, 0, 0, 0, 0, 0};    ///< share of what left through that face which comes back
+  float other[6] = {1, 1, 1, 1, 1, 1};  ///< share of what the neighbour sent
+};
+/// Of one channel, [block][voxel] of the diffusion medium.
+std::vector<Link> voxel_links(const DiffusionMedium&, int channel);
+
 LatticeMedium make_lattice_medium(const DiffusionMedium&, const LatticeSettings&);
 
 }  // namespace turbid

@@ -7,7 +7,7 @@
 namespace turbid {
 
 void LatticeSolver::prepare_diffusion(const DiffusionMedium& medium) {
-  lattice_.emplace(context_.session, medium, context_.settings.lattice);
+  lattice_ = make_lattice(context_.session, medium, context_.settings.lattice);
 }
 
 void LatticeSolver::march_all(March& march) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The paper's scheme: batches of rays march on one queue while the lattice relaxes the earlier batches' deposits on another.
 #pragma once
-#include "host/transport/lattice.h"
+#include "host/transport/lattice_scheme.h"
 #include "host/transport/marching_solver.h"
 
 namespace turbid {
@@ -18,7 +18,7 @@ class LatticeSolver final : public MarchingSolver {
   std::size_t diffusion_bytes() const override { return lattice_ ? lattice_->device_bytes() : 0; }
 
  private:
-  std::optional<Lattice> lattice_;
+  std::unique_ptr<LatticeScheme> lattice_;
 };
 
 }  // namespace turbid

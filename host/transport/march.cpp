@@ -10,7 +10,10 @@
 namespace turbid {
 namespace {
 
-constexpr int kRaysPerLaunch = 1 << 14;  // a multiple of the work-group: Ctrl-C is answered between launches
+constexpr int kRaysPerLaunch = 1 << 14;  // Ctrl-C is answered between launches
+// Where the loop shape is a CPU's: rays that a work-item interleaves, and rays that it takes at a time.
+constexpr int kInterleave = 8, kRaysPerClaim = 64;
+constexpr std::size_t kOwnSumsShare = 8;  // of the device's memory, at the most, goes to work-items' own sums
 constexpr int kGroundTexels = 768;     // at the most, per side
 constexpr float kGroundReach = 3.0f;  // the collecting map spans this many domain sizes
 
@@ -24,11 +27,21 @@ glm::dvec3 colour_at(const std::vector<std::int64_t>& sums, std::size_t index, d
 March::March(cl::Session& session, const DeviceMedium& medium, const MarchSettings& settings,
              const std::array<FaceBoundary, 6>& faces, const Surroundings& surroundings)
     : session_(session), medium_(medium), settings_(settings) {
-  const bool moments = medium.features.anisotropic && medium.features.scattering;
+  const cl::DeviceInfo& device = session.device();
+  const std::size_t channels = medium.features.channels;
+  const std::size_t nodes = medium.source_tiles.size() * TURBID_TILE_NODES, width = channels == 3 ? 4 : 1;
+  if (device.cpu && device.compute_units * nodes * width * sizeof(std::int64_t) <= device.global_memory / kOwnSumsShare) {
+    volumes_ = device.compute_units;
+  }
   std::vector<cl::Define> defines = medium.defines();
+  defines.push_back({"TURBID_INTERLEAVE", device.cpu ? kInterleave : 1});
+  defines.push_back({"TURBID_RAYS_PER_CLAIM", device.cpu ? kRaysPerClaim : 1});
+  defines.push_back({"TURBID_OWN_SUMS", volumes_ > 0});
+  const bool moments = medium.features.anisotropic && medium.features.scattering;
   defines.push_back({"TURBID_FIRST_MOMENT", moments});
   program_ = session.build("march.cl", defines);
   kernel_ = decltype(kernel_)(program_, "march");
+  sum_deposits_ = decltype(sum_deposits_)(program_, "sum_deposits");
   params_.step = settings.step_in_voxels;
   params_.batch_steps = settings.batch_steps;
   params_.max_steps = settings.max_steps;
@@ -47,15 +60,17 @@ March::March(cl::Session& session, const DeviceMedium& medium, const MarchSettin
     params_.ground_origin[0] = centre.x - 0.5f * extent;
     params_.ground_origin[1] = centre.y - 0.5f * extent;
   }
-  const std::size_t channels = medium.features.channels;
-  deposit_ = session.allocate<std::int64_t>(medium.source_tiles.size() * TURBID_TILE_NODES * channels);
+  params_.own_nodes = volumes_ > 0 ? static_cast<int>(nodes) : 0;
+  deposit_ = session.allocate<std::int64_t>(nodes * channels);
   params_.flux_stride = static_cast<int>(deposit_.count());
   flux_ = session.allocate<std::int64_t>(moments ? 3 * deposit_.count() : 0);
+  own_sums_ = session.allocate<std::int64_t>(volumes_ * nodes * width);
   tallies_ = session.allocate<std::int64_t>(3 * TURBID_TALLY_COUNT);
   const std::size_t texels = static_cast<std::size_t>(params_.ground_size) * params_.ground_size;
   ground_ = session.allocate<std::int64_t>(texels * channels);
   ground_rays_ = session.allocate<int>(texels);
   next_count_ = session.allocate<int>(1);
+  claims_ = session.allocate<int>(1);
 }
 
 void March::reserve(std::size_t rays) {
@@ -75,6 +90,7 @@ void March::start(const LightRays& light) {
   session_.write(session_.march_queue(), rays_, std::span<const RayState>(light.rays));
   session_.fill_zero(session_.march_queue(), deposit_);
   session_.fill_zero(session_.march_queue(), flux_);
+  session_.fill_zero(session_.march_queue(), own_sums_);
   session_.fill_zero(session_.march_queue(), tallies_);
   session_.fill_zero(session_.march_queue(), ground_);
   session_.fill_zero(session_.march_queue(), ground_rays_);
@@ -86,23 +102,28 @@ void March::start(const LightRays& light) {
 void March::enqueue_batch() {
   reserve(ray_count_);
   session_.fill_zero(session_.march_queue(), next_count_);
-  params_.first_ray = 0;
-  params_.ray_count = static_cast<int>(ray_count_);
+  params_.end_ray = 0;
   enqueue_piece();
 }
 
 void March::enqueue_piece() {
   cl::Queue& queue = session_.march_queue();
-  const std::size_t count = std::min<std::size_t>(kRaysPerLaunch, ray_count_ - params_.first_ray);
-  kernel_.enqueue(queue, {count}, {64}, medium_.regions_buffer, medium_.tile_map_buffer, medium_.block_region_buffer,
-                  medium_.distance_tiles, medium_.index_tiles, medium_.coefficient_tiles, params_, rays_, next_,
-                  next_count_, deposit_, flux_, tallies_, ground_, ground_rays_, transmitted_);
+  params_.first_ray = params_.end_ray;
+  params_.end_ray = static_cast<int>(std::min<std::size_t>(params_.first_ray + kRaysPerLaunch, ray_count_));
+  session_.fill_zero(queue, claims_);
+  const cl::DeviceInfo& device = session_.device();
+  // A CPU's work-items take rays until none is left, one work-item per core; a GPU's take one ray each.
+  const std::size_t rays = params_.end_ray - params_.first_ray;
+  const std::size_t items = volumes_ > 0 ? volumes_ : device.cpu ? device.compute_units : rays;
+  kernel_.enqueue(queue, {items}, {device.cpu ? std::size_t{1} : std::size_t{64}}, medium_.regions_buffer,
+                  medium_.tile_map_buffer, medium_.block_region_buffer, medium_.distance_tiles, medium_.index_tiles,
+                  medium_.coefficient_tiles, params_, rays_, next_, next_count_, claims_,
+                  volumes_ > 0 ? own_sums_ : deposit_, flux_, tallies_, ground_, ground_rays_, transmitted_);
   cl::check(clFlush(queue.get()), "starting the march");
-  params_.first_ray += kRaysPerLaunch;
 }
 
 bool March::finish_batch(const std::function<void()>& between) {
-  while (params_.first_ray < params_.ray_count) {
+  while (static_cast<std::size_t>(params_.end_ray) < ray_count_) {
     session_.march_queue().finish();
     if (between) between();
     enqueue_piece();
@@ -113,7 +134,14 @@ bool March::finish_batch(const std::function<void()>& between) {
   return ray_count_ > 0;
 }
 
-std::vector<std::int64_t> March::read_deposit() { return session_.read(session_.march_queue(), deposit_); }
+std::vector<std::int64_t> March::read_deposit() {
+  cl::Queue& queue = session_.march_queue();
+  if (volumes_ > 0) {
+    const int nodes = params_.own_nodes;
+    sum_deposits_.enqueue(queue, {static_cast<std::size_t>(nodes)}, {64}, own_sums_, deposit_, volumes_, nodes);
+  }
+  return session_.read(queue, deposit_);
+}
 
 std::vector<std::int64_t> March::read_flux() { return session_.read(session_.march_queue(), flux_); }
 

@@ -54,11 +54,14 @@ class March {
   cl::Program program_;
   cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>,
              cl::Buffer<float>, MarchParams, cl::Buffer<RayState>, cl::Buffer<RayState>, cl::Buffer<int>,
-             cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>,
-             cl::Buffer<int>, cl::Buffer<std::int64_t>>
+             cl::Buffer<int>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>,
+             cl::Buffer<std::int64_t>, cl::Buffer<int>, cl::Buffer<std::int64_t>>
       kernel_;
+  cl::Kernel<cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, int, int> sum_deposits_;
   cl::Buffer<RayState> rays_, next_;
-  cl::Buffer<int> next_count_, ground_rays_;
+  cl::Buffer<int> next_count_, claims_, ground_rays_;
+  int volumes_ = 0;  ///< work-items that have sums of their own, each a volume of all nodes; 0: they share one
+  cl::Buffer<std::int64_t> own_sums_;  ///< [volume][node][4, or 1 where the scene is grey]
   cl::Buffer<std::int64_t> deposit_, flux_, tallies_, ground_, transmitted_;
   std::size_t ray_count_ = 0;
   int batches_ = 0;

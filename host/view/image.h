@@ -33,8 +33,8 @@ void write_exr(const ViewImage&, const ImageMetadata&, const std::string& path);
 
 /// 2^exposure * radiance, filmic shoulder so that highlights keep their hue, sRGB transfer, 8 bit; alpha is not written.
 void write_png_preview(const ViewImage&, float exposure_stops, const std::string& path);
-/// What write_png_preview() writes.
-std::vector<unsigned char> png_preview_bytes(const ViewImage&, float exposure_stops);
+/// What write_png_preview() writes; less compression (1 to 9) is faster.
+std::vector<unsigned char> png_preview_bytes(const ViewImage&, float exposure_stops, int compression = 6);
 
 /// Exposure [stops] that maps the picture's bright parts (99th percentile of luminance of covered pixels) near white.
 float automatic_exposure(const ViewImage&);

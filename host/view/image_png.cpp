@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "host/base/atomic_file.h"
+#include "host/base/parallel.h"
 #include "host/view/encode_image.h"
 
 namespace turbid {
@@ -52,21 +53,24 @@ float dither(int x, int y) {
 
 }  // namespace
 
-std::vector<unsigned char> png_preview_bytes(const ViewImage& image, float exposure_stops) {
+std::vector<unsigned char> png_preview_bytes(const ViewImage& image, float exposure_stops, int compression) {
   require_whole(image);
   const float gain = std::exp2(exposure_stops);
   std::vector<unsigned char> bytes(3 * image.colour.size());
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const std::size_t i = std::size_t(y) * image.width + x;
-      const glm::vec3 shown = tone_map(gain * glm::vec3(image.colour[i]));
-      for (int c = 0; c < 3; ++c)
-        bytes[3 * i + c] =
-            static_cast<unsigned char>(std::min(255 * srgb_transfer(std::min(shown[c], 1.0f)) + dither(x, y), 255.0f));
-    }
+  parallel_ranges(image.height, [&](int begin, int end) {
+    for (int y = begin; y < end; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const std::size_t i = std::size_t(y) * image.width + x;
+        const glm::vec3 shown = tone_map(gain * glm::vec3(image.colour[i]));
+        for (int c = 0; c < 3; ++c)
+          bytes[3 * i + c] =
+              static_cast<unsigned char>(std::min(255 * srgb_transfer(std::min(shown[c], 1.0f)) + dither(x, y), 255.0f));
+      }
+  });
   OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
   spec.attribute("Software", "Turbid " TURBID_VERSION);
+  spec.attribute("png:compressionLevel", compression);
   return encode_image("a picture", "png", spec, OIIO::TypeDesc::UINT8, bytes.data());
 }
 

@@ -16,7 +16,8 @@
 namespace turbid {
 namespace {
 
-constexpr int kSamplesPerLaunch = 1 << 14;  // Ctrl-C is answered between launches
+constexpr int kSamplesPerLaunch = 1 << 16;  // Ctrl-C is answered between launches
+constexpr int kInterleave = 8, kSamplesPerClaim = 64;  // of a CPU's work-item; a GPU's takes one sample
 
 ViewParams make_params(const ViewInput& in, const VoxelSpace& space) {
   const float h = space.frame.voxel_size;
@@ -105,6 +106,14 @@ void resolve(const Strip& strip, const std::vector<float>& radiance, int first_r
   }
 }
 
+/// The medium's -D integers and the loop shape that suits the device.
+std::vector<cl::Define> view_defines(const DeviceMedium& medium, bool cpu) {
+  std::vector<cl::Define> defines = medium.defines();
+  defines.push_back({"TURBID_INTERLEAVE", cpu ? kInterleave : 1});
+  defines.push_back({"TURBID_SAMPLES_PER_CLAIM", cpu ? kSamplesPerClaim : 1});
+  return defines;
+}
+
 }  // namespace
 
 /// What all cameras share.
@@ -115,8 +124,8 @@ struct ViewPass::Prepared {
   EntrySurfaces surfaces;
   cl::Program program;
   cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>,
-             cl::Buffer<float>, ViewParams, cl::Buffer<ViewSample>, cl::Buffer<float>, cl::Buffer<LightParams>,
-             cl::Buffer<float>, cl::Buffer<float>, cl::Buffer<float>, cl::Buffer<float>>
+             cl::Buffer<float>, ViewParams, cl::Buffer<ViewSample>, cl::Buffer<int>, cl::Buffer<float>,
+             cl::Buffer<LightParams>, cl::Buffer<float>, cl::Buffer<float>, cl::Buffer<float>, cl::Buffer<float>>
       kernel;
   ViewParams params;
   cl::Buffer<LightParams> lights;
@@ -127,7 +136,7 @@ struct ViewPass::Prepared {
         in(input),
         space{in.medium.frame()},
         surfaces(entry_surfaces(in.description, in.medium, true)),
-        program(session.build("view.cl", in.solution.device->defines())),
+        program(session.build("view.cl", view_defines(*in.solution.device, session.device().cpu))),
         kernel(program, "view"),
         params(make_params(in, space)) {
     std::vector<float> depth_values, ground_values, transmittance_values;
@@ -167,6 +176,8 @@ ViewImage ViewPass::look(const Camera& camera, const std::function<void(double)>
   const int rows = std::clamp(kSamplesPerLaunch / per_row, 1, image.height);
   cl::Buffer<ViewSample> samples = p.session.allocate<ViewSample>(static_cast<std::size_t>(rows) * per_row);
   cl::Buffer<float> radiance = p.session.allocate<float>(8 * static_cast<std::size_t>(rows) * per_row);
+  cl::Buffer<int> claims = p.session.allocate<int>(1);
+  const bool cpu = p.session.device().cpu;
   cl::Queue& queue = p.session.march_queue();
   ViewParams params = p.params;
   for (int row = 0; row < image.height; row += rows) {
@@ -174,9 +185,12 @@ ViewImage ViewPass::look(const Camera& camera, const std::function<void(double)>
     const Strip strip = maker.strip(row, end);
     p.session.write(queue, samples, std::span<const ViewSample>(strip.samples));
     params.sample_count = static_cast<int>(strip.samples.size());
-    p.kernel.enqueue(queue, {strip.samples.size()}, {16}, medium.regions_buffer, medium.tile_map_buffer,
+    p.session.fill_zero(queue, claims);
+    // A CPU's work-items take samples until none is left, one work-item per core; a GPU's take one each.
+    const std::size_t items = cpu ? p.session.device().compute_units : strip.samples.size();
+    p.kernel.enqueue(queue, {items}, {cpu ? std::size_t{1} : std::size_t{64}}, medium.regions_buffer, medium.tile_map_buffer,
                      medium.block_region_buffer, medium.distance_tiles, medium.index_tiles, medium.coefficient_tiles,
-                     params, samples, p.tiles, p.lights, p.depths, p.transmittance, p.ground, radiance);
+                     params, samples, claims, p.tiles, p.lights, p.depths, p.transmittance, p.ground, radiance);
     std::vector<float> values(8 * strip.samples.size());
     p.session.read(queue, radiance, std::span<float>(values));
     resolve(strip, values, row, end, maker.grid(), &image);

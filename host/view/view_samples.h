@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera's samples: what each pixel sees first, from a rasterised picture of the bodies' surfaces. Private to host/view.
+// A camera's samples: what each pixel sees first, from a rasterised picture of the bodies' surfaces.
 #pragma once
 #include <vector>
 

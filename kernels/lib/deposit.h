@@ -7,6 +7,10 @@
 
 #pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable
 
+static void add_count(global long* sum, long count) {
+  if (count != 0) atom_add((volatile global long*)sum, count);
+}
+
 static void add_fixed(global long* sum, float value) { atom_add((volatile global long*)sum, (long)value); }
 
 // Adds a colour in watts to CHANNELS consecutive sums.
@@ -19,9 +23,10 @@ static void add_power(global long* sums, Colour power, float fixed_per_watt) {
 
 // Where on a step of this optical depth the light is lost on average, as a share of its length: 1/t - 1/(e^t - 1). One half for
 // thin steps; the centroid is what diffusion sees of a voxel's source.
-static float centre_of_loss(float depth) {
-  return depth < 0.05f ? 0.5f - depth / 12.0f : 1.0f / depth - 1.0f / expm1(depth);
-}
+static float centre_of_loss(float depth) { return 1.0f / depth - 1.0f / expm1(depth); }
+
+// Optical depth up to which a step's middle will do: it is off by depth / 12 of the step, a hundredth of a voxel.
+#define THICK_STEP 0.25f
 
 // Spreads power trilinearly over the eight nodes of the cell: sums[tile][node][channel].
 static void splat(global long* sums, int tile, Cell cell, Colour power, float fixed_per_watt) {
@@ -33,6 +38,32 @@ static void splat(global long* sums, int tile, Cell cell, Colour power, float fi
         (size_t)tile * TURBID_TILE_NODES + cell.node + dx + TURBID_TILE_EDGE * (dy + TURBID_TILE_EDGE * dz);
     add_power(sums + TURBID_CHANNELS * node, weight * power, fixed_per_watt);
   }
+}
+
+// Sums of a work-item's own need no atomics: four 64-bit integers per node in three colours, one in grey, so that the two
+// x-neighbours of a row are one vector. Being integers, they add up to the same whichever work-item traced which ray.
+#if TURBID_CHANNELS == 3
+#define OWN_WIDTH 4
+static ALWAYS_INLINE void add_row(global long* at, Colour left, Colour right) {
+  vstore8(vload8(0, at) + convert_long8((float8)(left, right)), 0, at);
+}
+#else
+#define OWN_WIDTH 1
+static ALWAYS_INLINE void add_row(global long* at, Colour left, Colour right) {
+  vstore2(vload2(0, at) + convert_long2((float2)(left, right)), 0, at);
+}
+#endif
+
+static ALWAYS_INLINE void splat_own(global long* sums, int tile, Cell cell, Colour power, float fixed_per_watt) {
+  global long* at = sums + OWN_WIDTH * ((size_t)tile * TURBID_TILE_NODES + cell.node);
+  const float3 f = cell.fraction;
+  const Colour units = power * fixed_per_watt;
+  const Colour far = f.z * units, near = units - far;
+  const Colour near_up = f.y * near, far_up = f.y * far, near_down = near - near_up, far_down = far - far_up;
+  add_row(at, near_down - f.x * near_down, f.x * near_down);
+  add_row(at + OWN_WIDTH * TURBID_TILE_EDGE, near_up - f.x * near_up, f.x * near_up);
+  add_row(at + OWN_WIDTH * TURBID_TILE_EDGE * TURBID_TILE_EDGE, far_down - f.x * far_down, f.x * far_down);
+  add_row(at + OWN_WIDTH * TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1), far_up - f.x * far_up, f.x * far_up);
 }
 
 #endif

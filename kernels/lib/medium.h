@@ -78,14 +78,27 @@ static float4 surface_at(const Medium* medium, int region, Cell cell) {
   return interpolate4(medium->distance_tiles, tile, cell);
 }
 
-// The body that stands last in the scene and holds the point, or 0, the ambient.
-static int region_at(const Medium* medium, Cell cell) {
+// The body that stands last in the scene and holds the point, or 0, the ambient. `room`: as far as this [voxels] around the
+// point, but within its block of cells, the region is the same: the derivatives of an interpolated distance along the three
+// axes are at most 1 each, so its gradient is at most sqrt(3).
+static int region_with_room(const Medium* medium, Cell cell, float* room) {
+  *room = 1e9f;
   const int only = medium->block_region[cell.block];
   if (only != TURBID_MIXED_BLOCK) return only;
   for (int region = TURBID_BODIES; region >= 1; --region) {
-    if (surface_at(medium, region, cell).w < 0.0f) return region;
+    const int tile = tile_of(medium, medium->regions[region].distance_set, cell.block);
+    if (tile == TURBID_TILE_INSIDE) return region;
+    if (tile == TURBID_TILE_OUTSIDE) continue;
+    const float signed_distance = interpolate4(medium->distance_tiles, tile, cell).w;
+    *room = fmin(*room, 0.577f * fabs(signed_distance));
+    if (signed_distance < 0.0f) return region;
   }
   return 0;
+}
+
+static int region_at(const Medium* medium, Cell cell) {
+  float room;
+  return region_with_room(medium, cell, &room);
 }
 
 // (grad u, u) with u = eta^2 / 2.
@@ -101,6 +114,7 @@ static float4 index_at(const Medium* medium, int region, Cell cell) {
   return (float4)(0.0f, 0.0f, 0.0f, 0.5f * eta * eta);
 }
 
+// The refractive index.
 static float eta_at(const Medium* medium, int region, Cell cell) {
   return sqrt(2.0f * index_at(medium, region, cell).w);
 }
@@ -115,36 +129,38 @@ typedef struct {
 #define COEFFICIENT_WIDTH 2
 #endif
 
-static Extinction extinction_at(const Medium* medium, int region, Cell cell) {
+// Interpolated in a tile of coefficients, or the region's constants where there is none (tile < 0).
+static Extinction extinction_in(const Medium* medium, int region, int tile, Cell cell) {
   Extinction result;
 #if TURBID_HETEROGENEOUS
-  const int set = medium->regions[region].coefficient_set;
-  const int tile = set >= 0 ? tile_of(medium, set, cell.block) : -1;
   if (tile >= 0) {
     const global float* at = medium->coefficient_tiles + COEFFICIENT_WIDTH * ((size_t)tile * TURBID_TILE_NODES + cell.node);
+    // The two x-neighbours of a row of corners come in one load.
 #if TURBID_CHANNELS == 3
-#define CORNER(offset) vload8(0, at + COEFFICIENT_WIDTH * (offset))
-    float8 value[4];
+#define ROW(offset) vload16(0, at + COEFFICIENT_WIDTH * (offset))
+    typedef float16 Row;
 #else
-#define CORNER(offset) vload2(0, at + COEFFICIENT_WIDTH * (offset))
-    float2 value[4];
+#define ROW(offset) vload4(0, at + COEFFICIENT_WIDTH * (offset))
+    typedef float4 Row;
 #endif
-    for (int row = 0; row < 4; ++row) {
-      const int offset = TURBID_TILE_EDGE * ((row & 1) + TURBID_TILE_EDGE * (row >> 1));
-      value[row] = CORNER(offset) + cell.fraction.x * (CORNER(offset + 1) - CORNER(offset));
-    }
-#undef CORNER
-    value[0] += cell.fraction.y * (value[1] - value[0]);
-    value[2] += cell.fraction.y * (value[3] - value[2]);
-    value[0] += cell.fraction.z * (value[2] - value[0]);
-    result.sigma_s = value[0].lo;
-    result.sigma_a = value[0].hi;
+    const Row a = ROW(0), b = ROW(TURBID_TILE_EDGE);
+    const Row c = ROW(TURBID_TILE_EDGE * TURBID_TILE_EDGE), d = ROW(TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1));
+#undef ROW
+    const Row low = a + cell.fraction.z * (c - a), high = b + cell.fraction.z * (d - b);
+    const Row row = low + cell.fraction.y * (high - low);
+    result.sigma_s = row.lo.lo + cell.fraction.x * (row.hi.lo - row.lo.lo);
+    result.sigma_a = row.lo.hi + cell.fraction.x * (row.hi.hi - row.lo.hi);
     return result;
   }
 #endif
-  result.sigma_s = colour_load(medium->regions[region].sigma_s);
-  result.sigma_a = colour_load(medium->regions[region].sigma_a);
+  result.sigma_s = colour_load4(medium->regions[region].sigma_s);
+  result.sigma_a = colour_load4(medium->regions[region].sigma_a);
   return result;
+}
+
+static Extinction extinction_at(const Medium* medium, int region, Cell cell) {
+  const int set = medium->regions[region].coefficient_set;
+  return extinction_in(medium, region, set >= 0 ? tile_of(medium, set, cell.block) : -1, cell);
 }
 
 #endif

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// One step of a ray through the medium: straight where the index is constant, kick-drift-kick where it is graded, cut short
-// at the domain's faces and at the zero crossing of a body's signed distance.
+// One step of a ray through the medium: straight where the index is constant, drift-kick-drift where it is graded, cut short
+// at the domain's faces and at the zero crossing of a body's signed distance. `advance` does any step; `glide` the many steps
+// on which nothing can happen, at a fraction of the cost.
 //
 // Ray equation in the parameter tau, dtau = ds / eta:              [Ihrke et al. 2007; Sharma et al. 1982]
 //     dx/dtau = v,   dv/dtau = grad(eta^2 / 2),   |v| = eta(x)
+// Half a drift, the kick, half a drift: second order and symplectic for a constant dtau, like kick-drift-kick, but force,
+// coefficients and source are all sampled at one point, the middle of the step.
 #ifndef TURBID_LIB_TRACE_H
 #define TURBID_LIB_TRACE_H
 #include "lib/interface.h"
@@ -28,6 +31,8 @@ typedef struct {
   int event;
   float length;       // arc length done [voxels]
   float3 middle;      // point half way
+  float eta_squared;  // there
+  float room;         // as far as this around the end point, within its block, no surface is met [voxels]
   int next_region;    // EVENT_SURFACE: the region beyond
   int surface;        // EVENT_SURFACE: the body whose surface it is
   float3 beyond;      // EVENT_SURFACE: a point just beyond the surface
@@ -87,39 +92,43 @@ static void find_crossing(const Medium* medium, Step* step, int region, float3 a
 }
 
 // Advances the ray by at most `step_size` of arc (farther where nothing can happen on the way) and says what stopped it.
-static Step advance(const Medium* medium, Ray* ray, float step_size) {
+// `room`: as far as this the ray surely meets no surface in its block [voxels]; 0 where nothing is known.
+static Step advance(const Medium* medium, Ray* ray, float step_size, float room) {
   Step step;
   step.event = EVENT_NONE;
   step.next_region = ray->region;
   step.surface = ray->region;
   step.face = 0;
   const float3 from = ray->x;
-  const Cell cell = locate(from);
+  const global RegionParams* region = medium->regions + ray->region;
   float3 to;
   float3 v = ray->v;
   bool graded = false;
 #if TURBID_GRADED
-  const int index_set = medium->regions[ray->region].index_set;
-  graded = index_set >= 0 && tile_of(medium, index_set, cell.block) >= 0;
-  float dtau = 0.0f;
-  if (graded) {
-    // Kick, drift, kick: second order and symplectic for a constant dtau; the arc length of a step follows eta.
-    const float4 u = index_at(medium, ray->region, cell);
-    dtau = step_size * medium->regions[ray->region].tau_per_arc;
-    v += 0.5f * dtau * u.xyz;
-    to = from + dtau * v;
-  } else
+  const float dtau = step_size * region->tau_per_arc;
+  if (region->index_set >= 0) {
+    const Cell cell = locate(from + 0.5f * dtau * v);
+    const int tile = tile_of(medium, region->index_set, cell.block);
+    if (tile >= 0) {
+      graded = true;
+      v += dtau * interpolate4(medium->index_tiles, tile, cell).xyz;
+      to = from + 0.5f * dtau * (ray->v + v);
+    }
+  }
 #endif
-  {
+  if (!graded) {
     const float3 direction = v * rsqrt(dot(v, v));
     float length = step_size;
-    const global RegionParams* region = medium->regions + ray->region;
-    if (medium->block_region[cell.block] == ray->region && region->source_set < 0 && region->coefficient_set < 0) {
-      length = fmax(length, distance_to_block_end(from, direction));
+    if (region->source_set < 0 && region->coefficient_set < 0) {
+      // Constant coefficients and nothing to gather: one exact segment.
+      const float end = distance_to_block_end(from, direction);
+      const bool alone = medium->block_region[locate(from).block] == ray->region;
+      length = fmax(length, alone ? end : fmin(room, end));
     }
     to = from + length * direction;
   }
   // The domain's faces.
+  const float3 target = to;
   float inside = 1.0f;
   {
     const float fx = fraction_inside(from.x, to.x, (float)TURBID_VOXELS_X);
@@ -135,9 +144,11 @@ static Step advance(const Medium* medium, Ray* ray, float step_size) {
     }
   }
   // Another region's surface on the way?
+  step.room = 1e9f;
 #if TURBID_BODIES > 0
-  const int there = region_at(medium, locate(to));
+  const int there = region_with_room(medium, locate(to), &step.room);
   if (there != ray->region) {
+    step.room = 0.0f;
     // A ray that starts on the rasterised surface may find itself a little on the wrong side of the sampled one, which is
     // coarser: it keeps its region while it gets clear.
     const bool getting_clear = ray->grace > 0.0f && step.event == EVENT_NONE;
@@ -149,20 +160,102 @@ static Step advance(const Medium* medium, Ray* ray, float step_size) {
     }
   }
 #endif
-#if TURBID_GRADED
-  if (graded) {
-    // The closing kick; after a shortened step the velocity follows the part that was done.
-    const float done = length(to - from) / fmax(length(v) * dtau, 1e-12f);
-    const float4 u = index_at(medium, ray->region, locate(to));
-    v = ray->v + (v - ray->v) * done + 0.5f * dtau * done * u.xyz;
-  }
-#endif
   step.length = distance(from, to);
   step.middle = 0.5f * (from + to);
+#if TURBID_GRADED
+  if (graded) {
+    float done = dtau;
+    if (step.event != EVENT_NONE) {
+      // The velocity follows the part of the step that was done.
+      done *= step.length / fmax(distance(from, target), 1e-12f);
+      v = ray->v + done * index_at(medium, ray->region, locate(from + 0.5f * done * ray->v)).xyz;
+    }
+    step.middle = from + 0.5f * done * ray->v;
+  }
+#endif
+  const float3 mean = 0.5f * (ray->v + v);
+  step.eta_squared = dot(mean, mean);
   ray->x = to;
   ray->v = v;
   ray->grace -= step.length;
   return step;
+}
+
+// The block of cells around a ray, looked up once per visit, and the room left in it.
+typedef struct {
+  float3 corner;          // of the block's first node [voxels]
+  int block, region;      // looked up for these
+  int index_tile;         // < 0: no tile, as in the two below
+  int coefficient_tile;
+  int source_tile;
+  float dtau;             // of a whole step
+  float eta_squared;      // where there is no index tile
+  float room;             // arc length on which the ray meets no surface and no face of the domain as long as it is in the block
+  float least_room;       // that a glide needs; without bounds where one long segment is exact
+} Place;
+
+// Where the ray has come to with a step that left it `room`.
+static void look_around(const Medium* medium, const Ray* ray, float step_size, float room, Place* place) {
+  const float3 x = ray->x;
+  const Cell cell = locate(x);
+  const global RegionParams* region = medium->regions + ray->region;
+  if (cell.block != place->block || ray->region != place->region) {
+    place->block = cell.block;
+    place->region = ray->region;
+    const int bx = cell.block % BLOCKS_X, by = (cell.block / BLOCKS_X) % BLOCKS_Y, bz = cell.block / (BLOCKS_X * BLOCKS_Y);
+    place->corner = (float3)(8 * bx, 8 * by, 8 * bz) + 0.5f;
+    place->index_tile = region->index_set >= 0 ? tile_of(medium, region->index_set, cell.block) : -1;
+    place->coefficient_tile = region->coefficient_set >= 0 ? tile_of(medium, region->coefficient_set, cell.block) : -1;
+    place->source_tile = region->source_set >= 0 ? tile_of(medium, region->source_set, cell.block) : -1;
+  }
+  const bool exact = place->index_tile < 0 && region->source_set < 0 && region->coefficient_set < 0;
+  place->least_room = exact ? 1e30f : step_size;
+  place->eta_squared = dot(ray->v, ray->v);
+  place->dtau = step_size * (place->index_tile >= 0 ? region->tau_per_arc : rsqrt(place->eta_squared));
+  // The outermost half voxel has cells of its own kind: steps there are done with care.
+  const float3 wall = fmin(x, (float3)(TURBID_VOXELS_X, TURBID_VOXELS_Y, TURBID_VOXELS_Z) - x) - 0.5f;
+  place->room = fmin(room, fmin(wall.x, fmin(wall.y, wall.z)));
+}
+
+typedef struct {
+  Cell cell;          // of the point half way, in the place's block
+  float length;       // arc length done [voxels]
+  float eta_squared;  // half way
+} Stride;
+
+// One step within the room of a place, as `advance` would do it; false, with nothing done, where it may meet something.
+static ALWAYS_INLINE bool glide(const Medium* medium, Ray* ray, Place* place, float step_size, Stride* stride) {
+  if (place->room < place->least_room) return false;
+  const float dtau = place->dtau;
+  const float3 middle = ray->x + 0.5f * dtau * ray->v;
+  const float3 y = fmin(middle - place->corner, (float3)(7.9999f));
+  const int3 i = convert_int3(y);
+  Cell cell;
+  cell.block = place->block;
+  cell.node = i.x + TURBID_TILE_EDGE * (i.y + TURBID_TILE_EDGE * i.z);
+  cell.fraction = y - convert_float3(i);
+  float3 v = ray->v;
+#if TURBID_GRADED
+  if (place->index_tile >= 0) v += dtau * interpolate4(medium->index_tiles, place->index_tile, cell).xyz;
+#endif
+  const float3 to = middle + 0.5f * dtau * v;
+  const float3 off = fabs(to - place->corner - 4.0f);
+  if (fmax(off.x, fmax(off.y, off.z)) > 4.0f) return false;
+  stride->cell = cell;
+  stride->length = step_size;
+  stride->eta_squared = place->eta_squared;
+#if TURBID_GRADED
+  if (place->index_tile >= 0) {
+    const float3 mean = 0.5f * (ray->v + v);
+    stride->eta_squared = dot(mean, mean);
+    stride->length = dtau * sqrt(stride->eta_squared);
+  }
+#endif
+  ray->x = to;
+  ray->v = v;
+  ray->grace -= stride->length;
+  place->room -= stride->length;
+  return true;
 }
 
 // No reflection between two regions: their blurred indices join, or the indices agree to what sampling can tell (a graded index

@@ -17,7 +17,7 @@ typedef struct {
   int bounces;        // interfaces met so far
   int steps;          // steps done so far
   int texel;          // of the light's shadow map, counted through all maps; -1: none
-  int padding;
+  float room;         // see Place in lib/trace.h; 0: unknown
 } RayState;
 TURBID_ASSERT_SIZE(RayState, 80);
 
@@ -37,7 +37,7 @@ typedef struct {
   int max_steps;
   int max_bounces;
   int first_ray;          // of this launch
-  int ray_count;          // of all
+  int end_ray;            // one beyond the last
   float fixed_per_watt;   // fixed-point units per watt
   int faces[6];           // TURBID_FACE_...
   int straight;           // 1: nothing refracts; what passes the medium is collected per shadow-map texel instead
@@ -47,7 +47,8 @@ typedef struct {
   float ground_texel;     // edge of its texels [voxels]
   int ground_size;        // texels per side
   int flux_stride;        // numbers per axis of the deposits' first moment
+  int own_nodes;          // nodes of one work-item's own sums; 0: all add to the same ones
 } MarchParams;
-TURBID_ASSERT_SIZE(MarchParams, 84);
+TURBID_ASSERT_SIZE(MarchParams, 88);
 
 #endif

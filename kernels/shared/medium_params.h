@@ -28,13 +28,12 @@ typedef struct {
   int smooth_group;       // 1: shares its blurred index with the other regions marked so; no interface between them
   int opaque;             // 1: an opaque Lambertian surface
   int attenuates;         // 1: sigma_s + sigma_a > 0 somewhere
-  float sigma_s[3];       // where coefficient_set < 0
-  float sigma_a[3];
+  float sigma_s[4];       // where coefficient_set < 0; the fourth is 0
+  float sigma_a[4];
   float reflectance[3];   // of an opaque surface
   float reflectance2[3];  // second colour of its checkerboard
   float checker_size;     // [voxels], 0: plain
   float tau_per_arc;      // 1 / largest eta of the region: dtau of a step of unit arc
-  float padding[2];
 } RegionParams;
 TURBID_ASSERT_SIZE(RegionParams, 96);
 

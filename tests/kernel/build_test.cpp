@@ -17,6 +17,10 @@ TEST(KernelFiles, RayProgramsBuildForEveryKindOfScene) {
                                                    {"TURBID_GRADED", choice >> 2 & 1},
                                                    {"TURBID_HETEROGENEOUS", choice >> 3 & 1},
                                                    {"TURBID_SCATTERING", choice >> 4 & 1},
+                                                   {"TURBID_INTERLEAVE", choice & 1 ? 8 : 1},
+                                                   {"TURBID_RAYS_PER_CLAIM", 64},
+                                                   {"TURBID_SAMPLES_PER_CLAIM", 64},
+                                                   {"TURBID_OWN_SUMS", choice & 1},
                                                    {"TURBID_VOXELS_X", 16},
                                                    {"TURBID_VOXELS_Y", 24},
                                                    {"TURBID_VOXELS_Z", 8}}))
@@ -25,11 +29,13 @@ TEST(KernelFiles, RayProgramsBuildForEveryKindOfScene) {
   }
 }
 
-TEST(KernelFiles, LatticesOfEitherEdgeBuildForEveryCollision) {
+TEST(KernelFiles, LatticesOfEitherEdgeAndTheGlobalOneBuildForEveryCollision) {
   for (long edge : {4, 8}) {
     for (long collision = 0; collision < 4; ++collision)
       EXPECT_NO_THROW(test::session().build("lattice.cl", {{"TURBID_EDGE", edge}, {"TURBID_COLLISION", collision}}));
   }
+  for (long collision = 0; collision < 4; ++collision)
+    EXPECT_NO_THROW(test::session().build("global_lattice.cl", {{"TURBID_COLLISION", collision}}));
 }
 
 TEST(KernelFiles, TheSteadySolveBuilds) {

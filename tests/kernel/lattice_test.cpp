@@ -2,6 +2,8 @@
 // The blockwise lattice against one global lattice in double precision; what a step does with energy; the printed
 // matrix.
 #include "host/transport/lattice.h"
+#include "host/transport/lattice_medium.h"
+#include "host/transport/lattice_scheme.h"
 
 #include <gtest/gtest.h>
 
@@ -55,8 +57,9 @@ TEST(Lattice, StepsOfBlocksAreStepsOfTheWholeLattice) {
     ASSERT_FALSE(medium.jumps.empty());
     ASSERT_FALSE(medium.boundary.empty());
     const std::vector<float> q = random_source(medium, 2);
-    for (int edge : {4, 8}) {
-      Lattice lattice(test::session(), medium, settings(variant, edge));
+    for (int edge : {4, 8, 0}) {  // 0: the global lattice in place
+      const auto scheme = make_lattice(test::session(), medium, settings(variant, edge));
+      LatticeScheme& lattice = *scheme;
       lattice.set_source(q);
       std::vector<test::DenseDiffusion::Populations> state(
           channels, test::DenseDiffusion::Populations(medium.stride(), {0, 0, 0, 0, 0, 0}));
@@ -95,8 +98,9 @@ TEST(Lattice, AStepKeepsTheEnergyIdentityWhereverItStands) {
     const std::vector<float> q = random_source(medium, 4);
     double total = 0;
     for (float value : q) total += value;
-    for (int edge : {4, 8}) {
-      Lattice lattice(test::session(), medium, settings(variant, edge));
+    for (int edge : {4, 8, 0}) {  // 0: the global lattice in place
+      const auto scheme = make_lattice(test::session(), medium, settings(variant, edge));
+      LatticeScheme& lattice = *scheme;
       lattice.set_source(q);
       for (int sweeps : {1, 3, 20}) {
         lattice.enqueue_sweeps(sweeps);
@@ -159,11 +163,13 @@ TEST(Lattice, BlocksAndInnerStepsDoNotChangeTheSteadyState) {
   const DiffusionMedium medium = test::random_medium(mixed_scene(), 0.3, 3, 5);
   const std::vector<float> q = random_source(medium, 6);
   std::vector<float> first;
-  for (int edge : {4, 8}) {
+  for (int edge : {4, 8, 0}) {
     for (int inner : {1, 2, 8}) {
+      if (edge == 0 && inner > 1) continue;
       LatticeSettings s = settings(CollisionVariant::trt, edge, inner);
       s.tolerance = 1e-5f;
-      Lattice lattice(test::session(), medium, s);
+      const auto scheme = make_lattice(test::session(), medium, s);
+      LatticeScheme& lattice = *scheme;
       lattice.set_source(q);
       EXPECT_LT(lattice.relax(), 1e-5);
       const std::vector<float> fluence = lattice.read_fluence();

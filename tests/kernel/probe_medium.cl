@@ -52,7 +52,7 @@ kernel void probe_step(MEDIUM_ARGUMENTS, const global float* in, float step_size
   ray.v = vload3(1, in + 8 * i);
   ray.region = (int)in[8 * i + 6];
   ray.grace = in[8 * i + 7];
-  const Step step = advance(&medium, &ray, step_size);
+  const Step step = advance(&medium, &ray, step_size, 0.0f);
   global float* at = out + 16 * i;
   at[0] = step.event;
   at[1] = step.length;

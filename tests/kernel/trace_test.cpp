@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps of rays: straight where the index is constant, curved by kick-drift-kick where it is graded, stopped at
+// Steps of rays: straight where the index is constant, curved by drift-kick-drift where it is graded, stopped at
 // surfaces and at the domain's faces.
 #include <gtest/gtest.h>
 

@@ -107,7 +107,19 @@ Outcome Workplace::run(const std::vector<std::string>& command, const RunSetting
     poll(ends, 2, -1);
     if (ends[0].revents != 0 && !drain(out[0], outcome.out)) ends[0].fd = -1;
     if (ends[1].revents != 0 && !drain(err[0], outcome.err)) ends[1].fd = -1;
-    if (interrupted == 0 && !settings.interrupt_at.empty() && has_line(outcome.err, settings.interrupt_at)) {
+    bool interrupt = !settings.interrupt_at.empty() && has_line(outcome.err, settings.interrupt_at);
+    if (const std::size_t end = outcome.out.find('\n'); interrupted == 0 && settings.visit && end != std::string::npos) {
+      try {
+        settings.visit(outcome.out.substr(0, end));
+      } catch (const std::exception& error) {
+        kill(child, SIGKILL);
+        while (drain(err[0], outcome.err)) continue;
+        waitpid(child, nullptr, 0);
+        throw std::runtime_error(std::string(error.what()) + "; the program said: " + outcome.err);
+      }
+      interrupt = true;
+    }
+    if (interrupted == 0 && interrupt) {
       interrupted = now();
       kill(child, SIGINT);
     }

@@ -2,6 +2,7 @@
 // Runs the program as a user does: in a folder of its own, with its own environment, limits and signals.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -19,6 +20,8 @@ struct Outcome {
 struct RunSettings {
   std::map<std::string, std::string> environment = {};  ///< added to the caller's; TURBID_... of the caller are removed
   std::size_t largest_file = 0;                         ///< limit of a written file [bytes]; 0: none
+  /// Called with the first line of standard output while the program goes on running; then SIGINT.
+  std::function<void(const std::string&)> visit = {};
   std::string interrupt_at = {};                        ///< SIGINT once standard error has a line that begins so
 };
 

@@ -18,18 +18,19 @@ std::string refusal(const Scene& scene, const std::vector<std::string>& settings
 
 TEST(ChangeScene, is_the_scene_that_reading_with_the_same_settings_gives) {
   const Folder folder;
-  const std::string path = folder.write("s.toml", ball_with("sigma_a = 0.02", "sigma_a = { expression = \"0.1 + 0.01*x\" }") +
-                                                      "[ground]\nheight = -12\n");
+  const std::string path =
+      folder.write("s.toml", ball_with("sigma_a = 0.02", "sigma_a = { expression = \"0.1 + 0.01*x\" }") +
+                                 "[ground]\nheight = -12\n");
   const Scene scene = read_scene(path);
-  for (const std::vector<std::string>& settings : std::vector<std::vector<std::string>>{
-           {},
-           {"camera.position=[10, 20, 30]", "camera.target=[1, 2, 3]"},
-           {"light.0.power=[1, 2, 3]"},
-           {"material.jade.sigma_a.scale=2.5"},
-           {"material.jade.sigma_s=[2, 2.1, 2.2]", "material.jade.g=0.3"},
-           {"film.exposure=3.5"},
-           {"ground.colour=0.1", "background=0.25"},
-           {"view.max_branches=3"}}) {
+  for (const std::vector<std::string>& settings :
+       std::vector<std::vector<std::string>>{{},
+                                             {"camera.position=[10, 20, 30]", "camera.target=[1, 2, 3]"},
+                                             {"light.0.power=[1, 2, 3]"},
+                                             {"material.jade.sigma_a.scale=2.5"},
+                                             {"material.jade.sigma_s=[2, 2.1, 2.2]", "material.jade.g=0.3"},
+                                             {"film.exposure=3.5"},
+                                             {"ground.colour=0.1", "background=0.25"},
+                                             {"view.max_branches=3"}}) {
     const Scene changed = change_scene(scene, settings), read = read_scene(path, with(settings));
     EXPECT_EQ(changed.effective_toml, read.effective_toml);
     EXPECT_EQ(changed.hash, read.hash);

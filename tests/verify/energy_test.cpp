@@ -120,9 +120,10 @@ std::uint64_t fingerprint() {
   };
   for (const EnergyMedium& c : energy_media()) {
     if (c.name != std::string("nested") && c.name != std::string("heterogeneous")) continue;
-    for (const char* solver : {"steady", "lattice"}) {
+    for (const char* solver : {"steady", "lattice", "global lattice"}) {
       SolverSettings settings;
-      settings.solver = solver;
+      settings.solver = solver == std::string("steady") ? "steady" : "lattice";
+      if (solver == std::string("global lattice")) settings.lattice.block_edge = 0;
       settings.lattice.tolerance = 1e-3f;
       const test::Run run = test::run(c.scene, c.lights, settings);
       add(run.solution.volume.fluence.data(), 4 * run.solution.volume.fluence.size());

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// The engine's own solvers as they are run, without a scene around them.
+#include "host/bench/measure_lattice.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "host/bench/hard_media.h"
+#include "host/profile/ceilings.h"
+#include "host/profile/spread.h"
+#include "host/transport/lattice_scheme.h"
+#include "host/transport/steady.h"
+
+namespace turbid {
+namespace {
+
+constexpr double kTrueError = 1e-4;
+
+template <class Work>
+double seconds_of(const Work& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  char buffer[200];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+LatticeSettings global_lattice() {
+  LatticeSettings settings;
+  settings.block_edge = 0;
+  return settings;
+}
+
+double relative_l2(const std::vector<float>& got, const std::vector<float>& exact) {
+  double difference = 0, norm = 0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    difference += std::pow(static_cast<double>(got[i]) - exact[i], 2);
+    norm += std::pow(static_cast<double>(exact[i]), 2);
+  }
+  return std::sqrt(difference / norm);
+}
+
+/// 160 bytes per voxel and step of three colours (performance notes): populations read and written, and the source.
+Goal single_step(cl::Session& session, int voxels, int repeats) {
+  constexpr int kSteps = 16, kNominalBytes = 160;
+  const DiffusionMedium medium = hard_medium(HardMedium::homogeneous, voxels, 1, 0.9999, 3);
+  const auto lattice = make_lattice(session, medium, global_lattice());
+  lattice->set_source(beam_source(medium));
+  const auto steps = [&] {
+    lattice->enqueue_sweeps(kSteps);
+    session.lattice_queue().finish();
+  };
+  steps();
+  CeilingMeter meter(session);
+  meter.measure(1);
+  std::vector<double> seconds;
+  for (int i = 0; i < repeats; ++i) {
+    meter.measure(1);
+    seconds.push_back(seconds_of(steps) / kSteps);
+  }
+  const double triad = meter.ceilings().triad.median, step = spread_of(seconds).median;
+  const double bandwidth = kNominalBytes * std::pow(voxels, 3) / step;
+  return {.name = text("single lattice step %d^3, nominal bandwidth / triad", voxels),
+          .ratio = bandwidth / triad,
+          .aim = 1.3,
+          .ours = text("%.1f GB/s nominal, %.0f million RGB updates/s", 1e-9 * bandwidth, 1e-6 * std::pow(voxels, 3) / step),
+          .against = text("triad %.1f GB/s", 1e-9 * triad),
+          .error = "none: the step is checked against double precision by the tests"};
+}
+
+/// Albedo .9999, s = 1: plain steps are done until the true error is small, and timed; then the solve.
+Goal plain_steps_against_solve(cl::Session& session, int voxels, int repeats) {
+  constexpr int kBetweenLooks = 64, kMostSteps = 20000;
+  const DiffusionMedium medium = hard_medium(HardMedium::homogeneous, voxels, 1, 0.9999, 3);
+  const std::vector<float> q = beam_source(medium);
+  SteadySettings deep;
+  deep.tolerance = 1e-6f;
+  const std::vector<float> exact = SteadySolve(session, medium, deep).solve(q).u;
+  const auto lattice = make_lattice(session, medium, global_lattice());
+  lattice->set_source(q);
+  double plain = 0, plain_error = 1;
+  int steps = 0;
+  while (plain_error > kTrueError && steps < kMostSteps) {
+    plain += seconds_of([&] {
+      lattice->enqueue_sweeps(kBetweenLooks);
+      session.lattice_queue().finish();
+    });
+    steps += kBetweenLooks;
+    plain_error = relative_l2(lattice->read_fluence(), exact);
+  }
+  SteadySolve solve(session, medium, {});
+  SteadyResult result = solve.solve(q);
+  std::vector<double> seconds;
+  for (int i = 0; i < repeats; ++i) seconds.push_back(seconds_of([&] { result = solve.solve(q); }));
+  const double steady = spread_of(seconds).median;
+  return {.name = text("plain lattice steps to true 1e-4 / steady solve, w = .9999, %d^3 (time)", voxels),
+          .ratio = plain / steady,
+          .aim = 200,
+          .ours = text("steady %.1f ms, %d iterations", 1e3 * steady, result.iterations),
+          .against = text("%d global steps in %.0f ms", steps, 1e3 * plain),
+          .error = text("true rel-L2: steps %.1e, steady %.1e", plain_error, relative_l2(result.u, exact))};
+}
+
+/// Iterations until the energy norm's error, from the gains of a much deeper solve, is below 1e-4.
+int iterations_needed(const SteadyResult& deep) {
+  double rest = 0;
+  for (const auto& gain : deep.gains) rest += gain[0];
+  const double small = kTrueError * kTrueError * rest;
+  int count = 0;
+  for (const auto& gain : deep.gains) {
+    if (rest <= small) break;
+    rest -= gain[0];
+    ++count;
+  }
+  return count;
+}
+
+Goal iterations(cl::Session& session, int largest) {
+  SteadySettings deep;
+  deep.tolerance = 1e-6f;
+  int worst = 0, worst_done = 0;
+  std::string where;
+  for (const int n : std::set<int>{32, largest}) {
+    for (const HardMedium kind : {HardMedium::homogeneous, HardMedium::checker, HardMedium::random, HardMedium::layers,
+                                  HardMedium::duct, HardMedium::voids, HardMedium::sphere}) {
+      for (const double albedo : {0.9, 0.9999}) {
+        for (const double s : {0.1, 1.0}) {
+          const DiffusionMedium medium = hard_medium(kind, n, s, albedo, 1);
+          SteadySolve exact(session, medium, deep), usual(session, medium, {});
+          for (const std::vector<float>& q : {beam_source(medium), point_source(medium)}) {
+            const int needed = iterations_needed(exact.solve(q));
+            worst_done = std::max(worst_done, usual.solve(q).iterations);
+            if (needed <= worst) continue;
+            worst = needed;
+            where = text("%s, %d^3, w = %g, s = %g", name_of(kind).c_str(), n, albedo, s);
+          }
+        }
+      }
+    }
+  }
+  return {.name = text("steady iterations to true 1e-4, worst of 7 media at 32^3 and %d^3", largest),
+          .ratio = static_cast<double>(worst),
+          .aim = 10,
+          .at_least = false,
+          .ours = where,
+          .against = text("its stopping test does up to %d", worst_done),
+          .error = "energy norm, against a solve to 1e-6"};
+}
+
+}  // namespace
+
+std::vector<Goal> measure_lattice(cl::Session& session, int voxels, int solve_voxels, int repeats) {
+  return {single_step(session, voxels, repeats), plain_steps_against_solve(session, solve_voxels, repeats),
+          iterations(session, solve_voxels)};
+}
+
+}  // namespace turbid

@@ -4,22 +4,12 @@
 #include "host/bench/measure_frame.h"
 
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 
+#include "host/bench/figures.h"
 #include "host/bench/light_run.h"
 
 namespace turbid {
 namespace {
-
-std::string text(const char* format, ...) {
-  char buffer[240];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(buffer, sizeof buffer, format, arguments);
-  va_end(arguments);
-  return buffer;
-}
 
 SceneOverrides bunny(const BenchSettings& settings, int resolution) {
   const int edge = settings.quick ? 96 : 512;
@@ -30,7 +20,7 @@ SceneOverrides bunny(const BenchSettings& settings, int resolution) {
 }
 
 std::string balance_of(const SolverReport& report) {
-  return text("solve to an estimated %.1e, energy off by %.1e", report.error_estimate, report.energy.imbalance());
+  return figures("solve to an estimated %.1e, energy off by %.1e", report.error_estimate, report.energy.imbalance());
 }
 
 Goal frame_over_kernels(cl::Session& session, const BenchSettings& settings) {
@@ -52,12 +42,12 @@ Goal frame_over_kernels(cl::Session& session, const BenchSettings& settings) {
     ratios.push_back(frames.back() / kernels.back());
   }
   const Spread ratio = spread_of(ratios), frame = spread_of(frames), kernel = spread_of(kernels);
-  return {.name = text("whole frame / sum of its kernels, bunny.toml %d^3, warm", resolution),
+  return {.name = figures("whole frame / sum of its kernels, bunny.toml %d^3, warm", resolution),
           .ratio = ratio.median,
           .aim = 1.15,
           .at_least = false,
-          .ours = text("frame %.1f ms (%.1f to %.1f, %d repeats)", 1e3 * frame.median, 1e3 * frame.min, 1e3 * frame.max, frame.count),
-          .against = text("kernels running %.1f ms (%.1f to %.1f)", 1e3 * kernel.median, 1e3 * kernel.min, 1e3 * kernel.max),
+          .ours = figures("frame %.1f ms (%.1f to %.1f, %d repeats)", 1e3 * frame.median, 1e3 * frame.min, 1e3 * frame.max, frame.count),
+          .against = figures("kernels running %.1f ms (%.1f to %.1f)", 1e3 * kernel.median, 1e3 * kernel.min, 1e3 * kernel.max),
           .error = balance_of(report)};
 }
 
@@ -92,13 +82,13 @@ Goal relight_over_whole(cl::Session& session, const BenchSettings& settings) {
     relight.push_back(seen - moved_at);
   }
   const Spread a = spread_of(relight), b = spread_of(whole);
-  return {.name = text("relight / whole frame, bunny.toml %d^3", resolution),
+  return {.name = figures("relight / whole frame, bunny.toml %d^3", resolution),
           .ratio = a.median / b.median,
           .aim = 0.5,
           .at_least = false,
-          .ours = text("a light moved by 5 degrees: march, solve and picture in %.0f ms (%.0f to %.0f, %d repeats)", 1e3 * a.median,
+          .ours = figures("a light moved by 5 degrees: march, solve and picture in %.0f ms (%.0f to %.0f, %d repeats)", 1e3 * a.median,
                        1e3 * a.min, 1e3 * a.max, a.count),
-          .against = text("scene to picture, programs cached, %.0f ms (%.0f to %.0f)", 1e3 * b.median, 1e3 * b.min, 1e3 * b.max),
+          .against = figures("scene to picture, programs cached, %.0f ms (%.0f to %.0f)", 1e3 * b.median, 1e3 * b.min, 1e3 * b.max),
           .error = balance_of(report)};
 }
 
@@ -114,16 +104,16 @@ Goal growth_with_voxels(cl::Session& session, const BenchSettings& settings) {
     frames.push_back(run.frame_seconds().median);
     solves.push_back(run.stage("diffuse").median);
     worst = std::max(worst, run.solution().report.error_estimate);
-    list += text("%s%d^3 %.0f", list.empty() ? "" : ", ", level, 1e3 * frames.back());
+    list += figures("%s%d^3 %.0f", list.empty() ? "" : ", ", level, 1e3 * frames.back());
   }
   return {.name = "scaling exponent of frame time in active voxels",
           .ratio = exponent_of(voxels, frames),
           .aim = 1.05,
           .at_least = false,
           .ours = "warm frames [ms]: " + list,
-          .against = text("%.2e to %.2e active voxels; the solve alone grows with exponent %.2f", voxels.front(),
+          .against = figures("%.2e to %.2e active voxels; the solve alone grows with exponent %.2f", voxels.front(),
                           voxels.back(), exponent_of(voxels, solves)),
-          .error = text("each solved to an estimated %.1e or better", worst)};
+          .error = figures("each solved to an estimated %.1e or better", worst)};
 }
 
 }  // namespace

@@ -3,11 +3,10 @@
 #include "host/bench/measure_lattice.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
+#include "host/bench/figures.h"
 #include "host/bench/hard_media.h"
 #include "host/profile/ceilings.h"
 #include "host/profile/spread.h"
@@ -18,20 +17,6 @@ namespace turbid {
 namespace {
 
 constexpr double kTrueError = 1e-4;
-
-template <class Work>
-double seconds_of(const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  char buffer[200];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
 
 LatticeSettings global_lattice() {
   LatticeSettings settings;
@@ -68,11 +53,11 @@ Goal single_step(cl::Session& session, int voxels, int repeats) {
   }
   const double triad = meter.ceilings().triad.median, step = spread_of(seconds).median;
   const double bandwidth = kNominalBytes * std::pow(voxels, 3) / step;
-  return {.name = text("single lattice step %d^3, nominal bandwidth / triad", voxels),
+  return {.name = figures("single lattice step %d^3, nominal bandwidth / triad", voxels),
           .ratio = bandwidth / triad,
           .aim = 1.3,
-          .ours = text("%.1f GB/s nominal, %.0f million RGB updates/s", 1e-9 * bandwidth, 1e-6 * std::pow(voxels, 3) / step),
-          .against = text("triad %.1f GB/s", 1e-9 * triad),
+          .ours = figures("%.1f GB/s nominal, %.0f million RGB updates/s", 1e-9 * bandwidth, 1e-6 * std::pow(voxels, 3) / step),
+          .against = figures("triad %.1f GB/s", 1e-9 * triad),
           .error = "none: the step is checked against double precision by the tests"};
 }
 
@@ -101,12 +86,12 @@ Goal plain_steps_against_solve(cl::Session& session, int voxels, int repeats) {
   std::vector<double> seconds;
   for (int i = 0; i < repeats; ++i) seconds.push_back(seconds_of([&] { result = solve.solve(q); }));
   const double steady = spread_of(seconds).median;
-  return {.name = text("plain lattice steps to true 1e-4 / steady solve, w = .9999, %d^3 (time)", voxels),
+  return {.name = figures("plain lattice steps to true 1e-4 / steady solve, w = .9999, %d^3 (time)", voxels),
           .ratio = plain / steady,
           .aim = 200,
-          .ours = text("steady %.1f ms, %d iterations", 1e3 * steady, result.iterations),
-          .against = text("%d global steps in %.0f ms", steps, 1e3 * plain),
-          .error = text("true rel-L2: steps %.1e, steady %.1e", plain_error, relative_l2(result.u, exact))};
+          .ours = figures("steady %.1f ms, %d iterations", 1e3 * steady, result.iterations),
+          .against = figures("%d global steps in %.0f ms", steps, 1e3 * plain),
+          .error = figures("true rel-L2: steps %.1e, steady %.1e", plain_error, relative_l2(result.u, exact))};
 }
 
 /// Iterations until the energy norm's error, from the gains of a much deeper solve, is below 1e-4.
@@ -140,18 +125,18 @@ Goal iterations(cl::Session& session, int largest) {
             worst_done = std::max(worst_done, usual.solve(q).iterations);
             if (needed <= worst) continue;
             worst = needed;
-            where = text("%s, %d^3, w = %g, s = %g", name_of(kind).c_str(), n, albedo, s);
+            where = figures("%s, %d^3, w = %g, s = %g", name_of(kind).c_str(), n, albedo, s);
           }
         }
       }
     }
   }
-  return {.name = text("steady iterations to true 1e-4, worst of 7 media at 32^3 and %d^3", largest),
+  return {.name = figures("steady iterations to true 1e-4, worst of 7 media at 32^3 and %d^3", largest),
           .ratio = static_cast<double>(worst),
           .aim = 10,
           .at_least = false,
           .ours = where,
-          .against = text("its stopping test does up to %d", worst_done),
+          .against = figures("its stopping test does up to %d", worst_done),
           .error = "energy norm, against a solve to 1e-6"};
 }
 

@@ -3,11 +3,12 @@
 #include "host/bench/measure_rays.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
+#include "host/bench/figures.h"
 #include "host/bench/reference_march.h"
+#include "host/profile/spread.h"
 #include "host/study/small_media.h"
 #include "host/transport/march.h"
 #include "host/view/source_tiles.h"
@@ -17,18 +18,6 @@ namespace turbid {
 namespace {
 
 constexpr float kStep = 0.5f;  // [voxels]
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values.empty() ? 0.0 : values[values.size() / 2];
-}
-
-template <class Work>
-double seconds_of(const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// Seconds that a kernel ran on the device while `work` was done.
 template <class Work>
@@ -143,10 +132,10 @@ Goal march_goal(cl::Session& session, int voxels, int repeats, bool deposits) {
   for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(escaped[c] - sums.escaped[c]) / sums.escaped[c]);
   Goal goal;
   goal.name = deposits ? "march with RGB deposit / deposit-free C++" : "march / own AVX-512 interleaved";
-  goal.ratio = median(theirs) / median(ours);  // the same rays: time against time
+  goal.ratio = spread_of(theirs).median / spread_of(ours).median;  // the same rays: time against time
   goal.aim = deposits ? 0.75 : 0.95;
-  goal.ours = rate("march.cl", static_cast<double>(tallies.work.steps), median(ours));
-  goal.against = rate("C++, 8 rays interleaved", static_cast<double>(sums.steps), median(theirs));
+  goal.ours = rate("march.cl", static_cast<double>(tallies.work.steps), spread_of(ours).median);
+  goal.against = rate("C++, 8 rays interleaved", static_cast<double>(sums.steps), spread_of(theirs).median);
   goal.error = difference("escaped powers", worst);
   return goal;
 }
@@ -235,10 +224,10 @@ Goal view_goal(cl::Session& session, int voxels, int repeats) {
   Goal goal;
   goal.name = "view / own AVX-512";
   // The same rays: time against time.
-  goal.ratio = median(theirs) / median(ours);
+  goal.ratio = spread_of(theirs).median / spread_of(ours).median;
   goal.aim = 0.9;
-  goal.ours = rate("view.cl", static_cast<double>(image.steps), median(ours));
-  goal.against = rate("C++, 8 rays interleaved", static_cast<double>(steps), median(theirs));
+  goal.ours = rate("view.cl", static_cast<double>(image.steps), spread_of(ours).median);
+  goal.against = rate("C++, 8 rays interleaved", static_cast<double>(steps), spread_of(theirs).median);
   goal.error = difference("radiances (rel-L2)", std::sqrt(squares / all));
   return goal;
 }

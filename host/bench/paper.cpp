@@ -36,15 +36,6 @@ std::string scene_of(const BenchSettings& settings) { return settings.scene("bub
 
 }  // namespace
 
-std::string figures(const char* format, ...) {
-  char buffer[400];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(buffer, sizeof buffer, format, arguments);
-  va_end(arguments);
-  return buffer;
-}
-
 Experiment history_length(cl::Session& session, const BenchSettings& settings) {
   Experiment e{.id = "history", .title = "Table I: history length k",
                .paper = "For a 128^3 volume entirely filled, k from 2 to 64: short histories take longer, k = 16 is best.",

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/bench/experiment.h"
+#include "host/bench/figures.h"
 #include "host/cl/session.h"
 
 namespace turbid {
@@ -30,8 +31,5 @@ Experiment concurrent_or_not(cl::Session&, const BenchSettings&);
 Experiment two_queues(cl::Session&, const BenchSettings&);
 Experiment number_of_rays(cl::Session&, const BenchSettings&);
 Experiment edges_and_inner_steps(cl::Session&, const BenchSettings&);
-
-/// "%.3g" and the like into a text.
-std::string figures(const char* format, ...) __attribute__((format(printf, 1, 2)));
 
 }  // namespace turbid

@@ -18,7 +18,7 @@ constexpr float kCompanionTolerance = 1e-3f;  // of its solve: far below the dif
 constexpr int kSmallPicture = 96;             // pixels of the small pictures' longest side
 constexpr std::size_t kEnoughValues = 3 * 64;
 
-// Factors between what is measured and the bound, from 31 spheres, slabs and boxes of transport depth 0.3 to 10 at 32
+// Factors between what is measured and the bound, from 11 spheres of transport depth 3 at 32
 // voxels, each against 4 times finer voxels, steps of 1/8 voxel and 64 rays per face (`turbid converge` repeats it).
 constexpr double kGrid = 1.2;         // error / difference to voxels twice as large: .5 to .8, 1.2 at point lights
 constexpr double kSteps = 0.012;      // of the first flight, at 1/2 voxel: .006 to .011, falls as the square

@@ -40,6 +40,13 @@ void LightRun::once(bool picture, bool keep) {
   stages_.emplace_back(progress_->times().begin() + static_cast<std::ptrdiff_t>(before), progress_->times().end());
 }
 
+void LightRun::forget_times() {
+  seconds_.clear();
+  view_.clear();
+  processor_.clear();
+  stages_.clear();
+}
+
 Spread LightRun::frame_seconds() const {
   std::vector<double> sums;
   for (std::size_t i = 0; i < seconds_.size(); ++i) sums.push_back(seconds_[i] + view_[i]);
@@ -68,10 +75,20 @@ void Runs::add(const std::function<void(Scene&)>& change) {
 }
 
 void run_interleaved(const std::vector<LightRun*>& runs, int repeats, bool picture, double most_seconds) {
+  constexpr double kLong = 5;
   const double started = wall_time();
-  for (int i = 0; i <= repeats; ++i) {
-    if (i > 1 && wall_time() - started > most_seconds) return;
-    for (LightRun* run : runs) run->once(picture, i > 0);
+  bool all_timed = true;
+  for (LightRun* run : runs) {
+    run->once(picture, true);
+    if (run->frame_seconds().median < kLong) {
+      run->forget_times();
+      all_timed = false;
+    }
+  }
+  for (int i = 0; i < repeats; ++i) {
+    if ((all_timed || i > 0) && wall_time() - started > most_seconds) return;
+    for (LightRun* run : runs)
+      if (i > 0 || !run->timed() || wall_time() - started < most_seconds) run->once(picture, true);
   }
 }
 

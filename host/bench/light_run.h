@@ -23,6 +23,8 @@ class LightRun {
 
   /// One light(), and a picture if asked for; its times are kept if `keep`.
   void once(bool picture, bool keep);
+  void forget_times();
+  bool timed() const { return !seconds_.empty(); }
   Spread seconds() const { return spread_of(seconds_); }    ///< of light() [s]
   Spread view_seconds() const { return spread_of(view_); }  ///< of the picture [s]
   Spread frame_seconds() const;                             ///< of both [s]

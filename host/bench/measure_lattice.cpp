@@ -35,7 +35,7 @@ double relative_l2(const std::vector<float>& got, const std::vector<float>& exac
 
 /// 160 bytes per voxel and step of three colours (performance notes): populations read and written, and the source.
 Goal single_step(cl::Session& session, int voxels, int repeats) {
-  constexpr int kSteps = 16, kNominalBytes = 160;
+  constexpr int kSteps = 32, kNominalBytes = 160;
   const DiffusionMedium medium = hard_medium(HardMedium::homogeneous, voxels, 1, 0.9999, 3);
   const auto lattice = make_lattice(session, medium, global_lattice());
   lattice->set_source(beam_source(medium));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lattice of lattice.cl as one whole, streamed in place (Bailey et al. 2009): single steps with one copy of the populations.
 //
-// Rows along x of neighbouring blocks are joined to runs; one work-item does one row. A local step reads the arrivals of a voxel
+// Rows along x of neighbouring blocks are joined to runs; one work-item does one row, and rows follow one another in memory. A local step reads the arrivals of a voxel
 // from its own slots and leaves what departs in the opposite slots; a crossing step reads arrivals from where the neighbours left
 // them and puts what departs where the neighbours read next. Each place is read and written by one voxel, so nothing depends on
 // the order. Towards a missing block a crossing step stays at the voxel's own slot and multiplies by the wall's R, both ways
@@ -21,10 +21,15 @@ static float sum8(float8 v) {
   return (half_sum.x + half_sum.y) + (half_sum.z + half_sum.w);
 }
 
+// Populations of eight voxels. Named, not an array: PoCL keeps arrays in memory.
+typedef struct {
+  float8 xp, xm, yp, ym, zp, zm;
+} Six;
+
+static float8 sum_of(Six f) { return ((f.xp + f.xm) + (f.yp + f.ym)) + (f.zp + f.zm); }
+
 // phi' = (1 - p0) phi + q0 and the moments' relaxation (lattice.cl); two-relaxation-time: p2 = 4 / (s + 2) = 2 - p1.
-static void collide(float8* f, float8 p0, float8 p1, float8 q0, float8* before, float8* after) {
-  const float8 phi = ((f[0] + f[1]) + (f[2] + f[3])) + (f[4] + f[5]);
-  const float8 phi_new = (phi - p0 * phi) + q0;
+static Six collide(Six f, float8 phi, float8 phi_new, float8 p1) {
   const float8 keep_odd = 0.5f - 0.5f * p1;
 #if TURBID_COLLISION == 3
   const float8 keep_even = -keep_odd;
@@ -32,14 +37,15 @@ static void collide(float8* f, float8 p0, float8 p1, float8 q0, float8* before, 
   const float8 keep_even = keep_odd;
 #endif
   const float8 base = phi_new * (1.0f / 6.0f) - keep_even * (phi * (1.0f / 3.0f));
-  for (int axis = 0; axis < 3; ++axis) {
-    const float8 even = base + keep_even * (f[2 * axis] + f[2 * axis + 1]);
-    const float8 odd = keep_odd * (f[2 * axis] - f[2 * axis + 1]);
-    f[2 * axis] = even + odd;
-    f[2 * axis + 1] = even - odd;
-  }
-  *before = phi;
-  *after = phi_new;
+  const float8 x = base + keep_even * (f.xp + f.xm), y = base + keep_even * (f.yp + f.ym), z = base + keep_even * (f.zp + f.zm);
+  const float8 dx = f.xp - f.xm, dy = f.yp - f.ym, dz = f.zp - f.zm;
+  f.xp = x + keep_odd * dx;
+  f.xm = x - keep_odd * dx;
+  f.yp = y + keep_odd * dy;
+  f.ym = y - keep_odd * dy;
+  f.zp = z + keep_odd * dz;
+  f.zm = z - keep_odd * dz;
+  return f;
 }
 
 static float8 fluence_of(float8 p0, float8 p1, float8 q0, float8 before, float8 after) {
@@ -59,13 +65,14 @@ static float8 fluence_of(float8 p0, float8 p1, float8 q0, float8 before, float8 
 }
 
 // What the kernels below are given. rows[row]: place of the first voxel, first block, blocks, row within the run (y + 8 z).
-// ends[row]: places of the voxels beyond its ends, < 0: a wall, whose R is end_walls[channel][row]. near[block][-y, +y, -z, +z]:
+// ends[row]: places of the voxels beyond its ends, < 0: a wall, whose R is end_walls[channel][row]; distance to the next row in
+// y, in z. near[block][-y, +y, -z, +z]:
 // place of the first row beyond the face and distance to the next one, or (-1 - wall, 0); walls[channel][wall][row][x]: R.
 // even[channel][block]: p0 and p1 of all the block's voxels, or p0 < 0 where collision[channel][p0, p1][place] differs between
 // them. lit[channel][block]: whether anything in source[channel][place] is not zero.
 #define MEDIUM_ARGUMENTS                                                                                                      \
   const global float *collision, const global float2 *even, const global float *source, const global int *lit,                \
-      const global int4 *rows, const global int2 *ends, const global float2 *end_walls, const global int2 *near,              \
+      const global int4 *rows, const global int4 *ends, const global float2 *end_walls, const global int2 *near,              \
       const global float *walls, int row_count, int block_count, int wall_count, int places, int channels
 #define MEDIUM                                                                                                          \
   collision, even, source, lit, rows, ends, end_walls, near, walls, row_count, block_count, wall_count, places, channels
@@ -76,67 +83,73 @@ typedef struct {
   const global float* wall;
 } Side;
 
-// `own`: the voxels' slot if there is a wall, `other`: the neighbours' slot; inner: place of the row beyond within the block.
-static Side side_of(global float* own, global float* other, const global float* walls, int2 near, int at, int inner, int is_inner,
-                    int along) {
-  Side side = {other + inner, 0};
-  if (is_inner) return side;
-  if (near.x >= 0) {
-    side.slot = other + near.x + along * near.y;
-  } else {
-    side.slot = own + at;
-    side.wall = walls + (size_t)(-1 - near.x) * 64 + 8 * along;
-  }
+// What lies beyond a block: `own` is the voxels' slot if there is a wall, `other` the neighbours' slot.
+static Side side_of(global float* own, global float* other, const global float* walls, int2 near, int at, int along) {
+  Side side;
+  side.slot = near.x >= 0 ? other + near.x + along * near.y : own + at;
+  side.wall = near.x >= 0 ? 0 : walls + (size_t)(-1 - near.x) * 64 + 8 * along;
   return side;
 }
+
+static float8 read_side(Side side) {
+  const float8 f = vload8(0, side.slot);
+  return side.wall ? f * vload8(0, side.wall) : f;
+}
+
+static void write_side(Side side, float8 f) { vstore8(side.wall ? f * vload8(0, side.wall) : f, 0, side.slot); }
+
+static float escaped_over(Side side, float8 f) { return side.wall ? sum8((1.0f - vload8(0, side.wall)) * f) : 0.0f; }
 
 static void step_row(global float* slots, MEDIUM_ARGUMENTS, global float* fluence, global float* sums, const int crossing,
                      const int measure) {
   const int row_index = get_global_id(0), channel = get_global_id(1);
   if (row_index >= row_count || channel >= channels) return;
-  const int4 row = rows[row_index];
-  const int2 end = ends[row_index];
+  const int4 row = rows[row_index], end = ends[row_index];
   const float2 end_wall = end_walls[(size_t)channel * row_count + row_index];
-  const int y = row.w & 7, z = row.w >> 3, length = 8 * row.z + 8;
-  global float* s0 = slots + (size_t)channel * 6 * places;
-  global float* s1 = s0 + places;
-  global float* s2 = s1 + places;
-  global float* s3 = s2 + places;
-  global float* s4 = s3 + places;
-  global float* s5 = s4 + places;
+  const int y = row.w & 7, z = row.w >> 3, last = row.z - 1;
+  global float* down_x = slots + (size_t)channel * 6 * places;
+  global float* up_x = down_x + places;
+  global float* down_y = up_x + places;
+  global float* up_y = down_y + places;
+  global float* down_z = up_y + places;
+  global float* up_z = down_z + places;
   const global float* c0 = collision + (size_t)channel * 2 * places;
   const global float* c1 = c0 + places;
   const global float* q = source + (size_t)channel * places;
   const global float* wall = walls + (size_t)channel * wall_count * 64;
   float8 change = (float8)(0.0f), total = change, lost = change, arrived = change;
-  float escaped[6] = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  float escaped_xm = 0.0f, escaped_xp = 0.0f, escaped_ym = 0.0f, escaped_yp = 0.0f, escaped_zm = 0.0f, escaped_zp = 0.0f;
   for (int k = 0; k < row.z; ++k) {
     const int at = row.x + 8 * k, block = row.y + k;
-    Side side[4];
+    Side ym, yp, zm, zp;
     if (crossing || measure) {
-      const global int2* beyond = near + 4 * block;
-      side[0] = side_of(s2, s3, wall, beyond[0], at, at - length, y > 0, z);
-      side[1] = side_of(s3, s2, wall, beyond[1], at, at + length, y < 7, z);
-      side[2] = side_of(s4, s5, wall, beyond[2], at, at - 8 * length, z > 0, y);
-      side[3] = side_of(s5, s4, wall, beyond[3], at, at + 8 * length, z < 7, y);
+      ym.slot = up_y + at - end.z;
+      yp.slot = down_y + at + end.z;
+      zm.slot = up_z + at - end.w;
+      zp.slot = down_z + at + end.w;
+      ym.wall = yp.wall = zm.wall = zp.wall = 0;
+      if (y == 0) ym = side_of(down_y, up_y, wall, near[4 * block], at, z);
+      if (y == 7) yp = side_of(up_y, down_y, wall, near[4 * block + 1], at, z);
+      if (z == 0) zm = side_of(down_z, up_z, wall, near[4 * block + 2], at, y);
+      if (z == 7) zp = side_of(up_z, down_z, wall, near[4 * block + 3], at, y);
     }
-    float8 f[6];
+    Six f;
     if (crossing) {
-      f[0] = vload8(0, s1 + at - 1);
-      f[1] = vload8(0, s0 + at + 1);
-      if (k == 0) f[0].s0 = end.x < 0 ? end_wall.x * s0[at] : s1[end.x];
-      if (k == row.z - 1) f[1].s7 = end.y < 0 ? end_wall.y * s1[at + 7] : s0[end.y];
-      for (int i = 0; i < 4; ++i) {
-        f[2 + i] = vload8(0, side[i].slot);
-        if (side[i].wall) f[2 + i] *= vload8(0, side[i].wall);
-      }
+      f.xp = vload8(0, up_x + at - 1);
+      f.xm = vload8(0, down_x + at + 1);
+      if (k == 0) f.xp.s0 = end.x < 0 ? end_wall.x * down_x[at] : up_x[end.x];
+      if (k == last) f.xm.s7 = end.y < 0 ? end_wall.y * up_x[at + 7] : down_x[end.y];
+      f.yp = read_side(ym);
+      f.ym = read_side(yp);
+      f.zp = read_side(zm);
+      f.zm = read_side(zp);
     } else {
-      f[0] = vload8(0, s0 + at);
-      f[1] = vload8(0, s1 + at);
-      f[2] = vload8(0, s2 + at);
-      f[3] = vload8(0, s3 + at);
-      f[4] = vload8(0, s4 + at);
-      f[5] = vload8(0, s5 + at);
+      f.xp = vload8(0, down_x + at);
+      f.xm = vload8(0, up_x + at);
+      f.yp = vload8(0, down_y + at);
+      f.ym = vload8(0, up_y + at);
+      f.zp = vload8(0, down_z + at);
+      f.zm = vload8(0, up_z + at);
     }
     const float2 same = even[(size_t)channel * block_count + block];
     float8 p0 = (float8)(same.x), p1 = (float8)(same.y), q0 = (float8)(0.0f);
@@ -145,51 +158,52 @@ static void step_row(global float* slots, MEDIUM_ARGUMENTS, global float* fluenc
       p1 = vload8(0, c1 + at);
     }
     if (lit[(size_t)channel * block_count + block]) q0 = vload8(0, q + at);
-    if (measure) arrived += ((f[0] + f[1]) + (f[2] + f[3])) + (f[4] + f[5]);
-    float8 before, after;
-    collide(f, p0, p1, q0, &before, &after);
+    const float8 before = sum_of(f), after = (before - p0 * before) + q0;
+    f = collide(f, before, after, p1);
     if (measure) {
       global float* psi = fluence + (size_t)channel * places + at;
       const float8 value = fluence_of(p0, p1, q0, before, after);
       change += fabs(value - vload8(0, psi));
       total += value;
       lost += before - after;
+      arrived += before;
       vstore8(value, 0, psi);
-      if (k == 0 && end.x < 0) escaped[0] = (1.0f - end_wall.x) * f[1].s0;
-      if (k == row.z - 1 && end.y < 0) escaped[1] = (1.0f - end_wall.y) * f[0].s7;
-      for (int i = 0; i < 4; ++i) {
-        if (side[i].wall) escaped[2 + i] += sum8((1.0f - vload8(0, side[i].wall)) * f[2 + (i ^ 1)]);
-      }
+      if (k == 0 && end.x < 0) escaped_xm = (1.0f - end_wall.x) * f.xm.s0;
+      if (k == last && end.y < 0) escaped_xp = (1.0f - end_wall.y) * f.xp.s7;
+      escaped_ym += escaped_over(ym, f.ym);
+      escaped_yp += escaped_over(yp, f.yp);
+      escaped_zm += escaped_over(zm, f.zm);
+      escaped_zp += escaped_over(zp, f.zp);
     }
     if (crossing) {
-      vstore8(f[1], 0, s1 + at - 1);
-      vstore8(f[0], 0, s0 + at + 1);
+      vstore8(f.xm, 0, up_x + at - 1);
+      vstore8(f.xp, 0, down_x + at + 1);
       if (k == 0) {
-        if (end.x < 0) s0[at] = end_wall.x * f[1].s0;
-        else s1[end.x] = f[1].s0;
+        if (end.x < 0) down_x[at] = end_wall.x * f.xm.s0;
+        else up_x[end.x] = f.xm.s0;
       }
-      if (k == row.z - 1) {
-        if (end.y < 0) s1[at + 7] = end_wall.y * f[0].s7;
-        else s0[end.y] = f[0].s7;
+      if (k == last) {
+        if (end.y < 0) up_x[at + 7] = end_wall.y * f.xp.s7;
+        else down_x[end.y] = f.xp.s7;
       }
-      for (int i = 0; i < 4; ++i) {
-        float8 out = f[2 + (i ^ 1)];
-        if (side[i].wall) out *= vload8(0, side[i].wall);
-        vstore8(out, 0, side[i].slot);
-      }
+      write_side(ym, f.ym);
+      write_side(yp, f.yp);
+      write_side(zm, f.zm);
+      write_side(zp, f.zp);
     } else {
-      vstore8(f[1], 0, s0 + at);
-      vstore8(f[0], 0, s1 + at);
-      vstore8(f[3], 0, s2 + at);
-      vstore8(f[2], 0, s3 + at);
-      vstore8(f[5], 0, s4 + at);
-      vstore8(f[4], 0, s5 + at);
+      vstore8(f.xm, 0, down_x + at);
+      vstore8(f.xp, 0, up_x + at);
+      vstore8(f.ym, 0, down_y + at);
+      vstore8(f.yp, 0, up_y + at);
+      vstore8(f.zm, 0, down_z + at);
+      vstore8(f.zp, 0, up_z + at);
     }
   }
   if (measure) {
     global float* out = sums + 10 * ((size_t)channel * row_count + row_index);
     vstore4((float4)(sum8(change), sum8(total), sum8(lost), sum8(arrived)), 0, out);
-    for (int i = 0; i < 6; ++i) out[4 + i] = escaped[i];
+    vstore4((float4)(escaped_xm, escaped_xp, escaped_ym, escaped_yp), 1, out);
+    vstore2((float2)(escaped_zm, escaped_zp), 4, out);
   }
 }
 

@@ -13,8 +13,8 @@ namespace turbid {
 namespace {
 
 constexpr int kVoxels = 512;
-constexpr int kSums = 10;          // per row, global_lattice.cl
-constexpr cl::Range kLocal{8, 1};  // the number of rows is a multiple of 64
+constexpr int kSums = 10;           // per row, global_lattice.cl
+constexpr cl::Range kLocal{16, 1};  // the number of rows is a multiple of 64
 
 }  // namespace
 

@@ -33,8 +33,8 @@ class GlobalLattice : public LatticeScheme {
   using F2 = cl::Buffer<std::array<float, 2>>;
   using I2 = cl::Buffer<std::array<std::int32_t, 2>>;
   using I4 = cl::Buffer<std::array<std::int32_t, 4>>;
-  using Step = cl::Kernel<F, F, F2, F, I, I4, I2, F2, I2, F, int, int, int, int, int>;
-  using MeasuredStep = cl::Kernel<F, F, F2, F, I, I4, I2, F2, I2, F, int, int, int, int, int, F, F>;
+  using Step = cl::Kernel<F, F, F2, F, I, I4, I4, F2, I2, F, int, int, int, int, int>;
+  using MeasuredStep = cl::Kernel<F, F, F2, F, I, I4, I4, F2, I2, F, int, int, int, int, int, F, F>;
   void enqueue_step(bool measure);
 
   cl::Session& session_;
@@ -48,8 +48,8 @@ class GlobalLattice : public LatticeScheme {
   F slots_, collision_, source_, walls_, fluence_, sums_, lost_;
   F2 even_, end_walls_;
   I lit_;
-  I4 rows_buffer_, faces_;
-  I2 ends_, near_;
+  I4 rows_buffer_, ends_, faces_;
+  I2 near_;
   cl::Buffer<std::array<float, 4>> links_;
 };
 

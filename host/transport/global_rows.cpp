@@ -13,40 +13,78 @@ namespace {
 
 constexpr int kEdge = 8, kVoxels = 512, kRows = 64, kPad = 8;
 
-/// Where a block stands in its run.
+/// Where a block stands in the order of places.
 struct Standing {
-  int first = 0;   ///< place of its voxel (0, 0, 0)
-  int length = 0;  ///< places from one row of the run to the next
+  int first = 0;    ///< place of its voxel (0, 0, 0)
+  int along_y = 0;  ///< places from one row to the next in y,
+  int along_z = 0;  ///< and in z
 };
 
-/// `sorted`: blocks in row order.
+/// Places run along x through neighbouring blocks, then along y through all blocks of a layer, then along z, as in one
+/// array where the domain is a full box: long streams of memory. `sorted`: blocks in that order.
 std::vector<Standing> lay_out(const BlockGrid& blocks, const std::vector<int>& sorted, GlobalRows& out) {
   std::vector<Standing> standing(blocks.count());
+  const auto at = [&](int i) { return blocks.coordinates(sorted[i]); };
+  const auto end_of = [&](int begin, const auto& together) {
+    int end = begin + 1;
+    while (end < blocks.count() && together(end)) ++end;
+    return end;
+  };
+  for (int layer = 0; layer < blocks.count();) {
+    const int layer_end = end_of(layer, [&](int i) { return at(i).z == at(layer).z; });
+    int height = 0;
+    for (int line = layer; line < layer_end;) {
+      const int line_end = end_of(line, [&](int i) { return at(i).z == at(line).z && at(i).y == at(line).y; });
+      int length = 0;
+      for (int i = line; i < line_end; ++i) {
+        const bool starts = i == line || at(i).x != at(i - 1).x + 1;
+        if (starts && i > line) length += kPad;
+        standing[sorted[i]].first = out.place_count + kPad + height + length;
+        length += kEdge;
+      }
+      length += kPad;
+      for (int i = line; i < line_end; ++i) standing[sorted[i]].along_y = length;
+      height += kEdge * length;
+      line = line_end;
+    }
+    for (int i = layer; i < layer_end; ++i) standing[sorted[i]].along_z = height;
+    out.place_count += kEdge * height;
+    layer = layer_end;
+  }
+  out.place_count += kPad;
+  return standing;
+}
+
+void add_rows(const BlockGrid& blocks, const std::vector<int>& sorted, const std::vector<Standing>& standing,
+              GlobalRows& out) {
   for (int begin = 0; begin < blocks.count();) {
     int end = begin + 1;
     while (end < blocks.count() &&
            blocks.coordinates(sorted[end]) == blocks.coordinates(sorted[end - 1]) + glm::ivec3(1, 0, 0)) {
       ++end;
     }
-    const int count = end - begin, length = kEdge * count + kPad, first = out.place_count + kPad;
-    for (int i = begin; i < end; ++i) standing[sorted[i]] = {first + kEdge * (i - begin), length};
-    for (int row = 0; row < kRows; ++row) out.rows.push_back({first + row * length, begin, count, row});
-    out.place_count += kRows * length;
+    const Standing& here = standing[sorted[begin]];
+    for (int row = 0; row < kRows; ++row) {
+      out.rows.push_back(
+          {here.first + row % kEdge * here.along_y + row / kEdge * here.along_z, begin, end - begin, row});
+    }
     begin = end;
   }
-  out.place_count += kPad;
-  return standing;
+  std::sort(out.rows.begin(), out.rows.end());
 }
 
 using Links = std::vector<std::vector<Link>>;  // [channel][block and voxel of the diffusion medium]
 
 /// What lies beyond the ends of every row.
-void add_ends(const BlockGrid& blocks, const std::vector<int>& sorted, const Links& links, GlobalRows& out) {
+void add_ends(const BlockGrid& blocks, const std::vector<int>& sorted, const std::vector<Standing>& standing,
+              const Links& links, GlobalRows& out) {
   const std::size_t rows = out.rows.size();
   out.ends.resize(rows);
   out.end_walls.assign(rows * links.size(), {0.0f, 0.0f});
   for (std::size_t i = 0; i < rows; ++i) {
     const auto& row = out.rows[i];
+    out.ends[i][2] = standing[sorted[row[1]]].along_y;
+    out.ends[i][3] = standing[sorted[row[1]]].along_z;
     for (int side = 0; side < 2; ++side) {
       const int block = sorted[side ? row[1] + row[2] - 1 : row[1]], other = blocks.neighbours()[block][side];
       const int v = row[3] * kEdge, last = kEdge - 1;
@@ -70,8 +108,8 @@ void add_sides(const BlockGrid& blocks, const std::vector<Standing>& standing, c
       if (other < blocks.count()) {
         const Standing& there = standing[other];
         const int facing = face % 2 ? 0 : kEdge - 1;  // its layer at the face
-        near = face < 4 ? std::array{there.first + facing * there.length, kEdge * there.length}
-                        : std::array{there.first + facing * kEdge * there.length, there.length};
+        near = face < 4 ? std::array{there.first + facing * there.along_y, there.along_z}
+                        : std::array{there.first + facing * there.along_z, there.along_y};
         continue;
       }
       near = {-1 - out.wall_count++, 0};
@@ -139,16 +177,18 @@ GlobalRows make_global_rows(const DiffusionMedium& medium) {
   out.order.resize(blocks.count());
   for (int i = 0; i < blocks.count(); ++i) out.order[sorted[i]] = i;
   const std::vector<Standing> standing = lay_out(blocks, sorted, out);
+  add_rows(blocks, sorted, standing, out);
   out.places.resize(medium.stride());
   for (int block = 0; block < blocks.count(); ++block) {
     const Standing& here = standing[block];
     for (int v = 0; v < kVoxels; ++v) {
-      out.places[block * std::size_t{kVoxels} + v] = here.first + v / kEdge * here.length + v % kEdge;
+      const int x = v % kEdge, y = v / kEdge % kEdge, z = v / (kEdge * kEdge);
+      out.places[block * std::size_t{kVoxels} + v] = here.first + z * here.along_z + y * here.along_y + x;
     }
   }
   Links links;
   for (int c = 0; c < medium.channels; ++c) links.push_back(voxel_links(medium, c));
-  add_ends(blocks, sorted, links, out);
+  add_ends(blocks, sorted, standing, links, out);
   add_sides(blocks, standing, links, out);
   add_faces(medium, links, out);
   out.place_count = (out.place_count + kPad - 1) / kPad * kPad;

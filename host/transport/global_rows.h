@@ -18,11 +18,12 @@ struct GlobalFace {
 
 struct GlobalRows {
   std::vector<std::array<std::int32_t, 4>> rows;  ///< place of the first voxel, first block, blocks, y + 8 z
-  std::vector<std::array<std::int32_t, 2>> ends;  ///< [row]: places beyond its ends, or -1 for a wall
+  std::vector<std::array<std::int32_t, 4>>
+      ends;  ///< [row]: places beyond its ends, or -1 for a wall; to the next row in y, z
   std::vector<std::array<float, 2>> end_walls;    ///< [channel][row]: R at its ends, 0 where there is no wall
   std::vector<std::array<std::int32_t, 2>> near;  ///< [block in row order][-y, +y, -z, +z]: first place beyond,
                                                   ///< distance of rows; or -1 - wall, 0
-  std::vector<float> walls;  ///< [channel][wall][row][x]: R
+  std::vector<float> walls;                       ///< [channel][wall][row][x]: R
   int wall_count = 0;
   std::vector<std::int32_t> order;   ///< [block of the diffusion medium]: its number in row order
   std::vector<std::int32_t> places;  ///< [block][voxel] of the diffusion medium: where it is kept

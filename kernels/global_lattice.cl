@@ -12,56 +12,12 @@
 // 2 axis + 1 ("up") the reverse.
 #include "shared/lattice_params.h"
 
-#if !defined(TURBID_COLLISION)
-#error "TURBID_COLLISION (0 paper, 1 exponential, 2 trapezoid, 3 trt) must be defined"
-#endif
+typedef float8 Lanes;
+#include "lib/collision.h"
 
 static float sum8(float8 v) {
   const float4 half_sum = v.lo + v.hi;
   return (half_sum.x + half_sum.y) + (half_sum.z + half_sum.w);
-}
-
-// Populations of eight voxels. Named, not an array: PoCL keeps arrays in memory.
-typedef struct {
-  float8 xp, xm, yp, ym, zp, zm;
-} Six;
-
-static float8 sum_of(Six f) { return ((f.xp + f.xm) + (f.yp + f.ym)) + (f.zp + f.zm); }
-
-// phi' = (1 - p0) phi + q0 and the moments' relaxation (lattice.cl); two-relaxation-time: p2 = 4 / (s + 2) = 2 - p1.
-static Six collide(Six f, float8 phi, float8 phi_new, float8 p1) {
-  const float8 keep_odd = 0.5f - 0.5f * p1;
-#if TURBID_COLLISION == 3
-  const float8 keep_even = -keep_odd;
-#else
-  const float8 keep_even = keep_odd;
-#endif
-  const float8 base = phi_new * (1.0f / 6.0f) - keep_even * (phi * (1.0f / 3.0f));
-  const float8 x = base + keep_even * (f.xp + f.xm), y = base + keep_even * (f.yp + f.ym), z = base + keep_even * (f.zp + f.zm);
-  const float8 dx = f.xp - f.xm, dy = f.yp - f.ym, dz = f.zp - f.zm;
-  f.xp = x + keep_odd * dx;
-  f.xm = x - keep_odd * dx;
-  f.yp = y + keep_odd * dy;
-  f.ym = y - keep_odd * dy;
-  f.zp = z + keep_odd * dz;
-  f.zm = z - keep_odd * dz;
-  return f;
-}
-
-static float8 fluence_of(float8 p0, float8 p1, float8 q0, float8 before, float8 after) {
-#if TURBID_COLLISION == 0
-  return before;
-#elif TURBID_COLLISION == 1
-  const float8 s = -log1p(-p1);  // p1 = 1 - e^-s
-  return s > 0.0f ? before * p1 / s : before;
-#elif TURBID_COLLISION == 2
-  return 0.5f * (before + after);
-#else
-  // psi = m - (s_a' m - q*) s / 4 (numerics section 1).
-  const float8 s = p1 / (1.0f - 0.5f * p1), absorbed = p0 / (1.0f - 0.5f * p0);
-  const float8 mean = 0.5f * (before + after), q_star = q0 * (1.0f + 0.5f * absorbed);
-  return mean - 0.25f * s * (absorbed * mean - q_star);
-#endif
 }
 
 // What the kernels below are given. rows[row]: place of the first voxel, first block, blocks, row within the run (y + 8 z).

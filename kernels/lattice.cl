@@ -22,24 +22,28 @@ typedef float16 Lanes;
 #define VECTORS (VOXELS / 16)
 #define PER_PLANE (VECTORS / EDGE)
 
-// Rows moved one voxel up or down along x; zeros follow.
 #if EDGE == 8
 typedef float8 Row;
 #define LOAD_ROW(row, at) vload8(row, at)
 #define STORE_ROW(value, row, at) vstore8(value, row, at)
-static Lanes shift_up(Lanes v) { return (Lanes)(0.0f, v.s0123, v.s456, 0.0f, v.s89ab, v.scde); }
-static Lanes shift_down(Lanes v) { return (Lanes)(v.s1234, v.s567, 0.0f, v.s9abc, v.sdef, 0.0f); }
+#define NOT_FIRST (int16)(0, -1, -1, -1, -1, -1, -1, -1, 0, -1, -1, -1, -1, -1, -1, -1)
+#define NOT_LAST (int16)(-1, -1, -1, -1, -1, -1, -1, 0, -1, -1, -1, -1, -1, -1, -1, 0)
 static Row first_row(Lanes v) { return v.lo; }
 static Row last_row(Lanes v) { return v.hi; }
 #else
 typedef float4 Row;
 #define LOAD_ROW(row, at) vload4(row, at)
 #define STORE_ROW(value, row, at) vstore4(value, row, at)
-static Lanes shift_up(Lanes v) { return (Lanes)(0.0f, v.s012, 0.0f, v.s456, 0.0f, v.s89a, 0.0f, v.scde); }
-static Lanes shift_down(Lanes v) { return (Lanes)(v.s123, 0.0f, v.s567, 0.0f, v.s9ab, 0.0f, v.sdef, 0.0f); }
+#define NOT_FIRST (int16)(0, -1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1)
+#define NOT_LAST (int16)(-1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0)
 static Row first_row(Lanes v) { return v.s0123; }
 static Row last_row(Lanes v) { return v.scdef; }
 #endif
+
+// Rows moved one voxel up or down along x; zeros follow. By one permutation and a mask: PoCL stores vectors that are put together
+// from parts in parts, and whole loads then wait for them.
+static Lanes shift_up(Lanes v) { return as_float16(as_int16(v.sf0123456789abcde) & NOT_FIRST); }
+static Lanes shift_down(Lanes v) { return as_float16(as_int16(v.s123456789abcdef0) & NOT_LAST); }
 
 static float sum16(Lanes v) {
   const float8 half_sum = v.lo + v.hi;
@@ -104,7 +108,7 @@ typedef struct {
 
 // One step. in: arrivals over the faces; wall: share of a voxel's departure that comes back. A crossing step leaves in the
 // end voxels' slots what arrives there next: own share, and `keep` (1, or 0 after the last step) of what comes in.
-static void step(global float* slots, const Block* block, const Faces* in, const Faces* wall, Faces* sent, float keep,
+__attribute__((always_inline)) static void step(global float* slots, const Block* block, const Faces* in, const Faces* wall, Faces* sent, float keep,
                  global float* fluence, Sums* sums, const int crossing, int last) {
   global float* down_x = slots;
   global float* up_x = slots + VOXELS;

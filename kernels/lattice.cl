@@ -24,21 +24,23 @@ typedef float16 Lanes;
 
 #if EDGE == 8
 typedef float8 Row;
-#define LOAD_ROW(row, at) vload8(row, at)
-#define STORE_ROW(value, row, at) vstore8(value, row, at)
 #define NOT_FIRST (int16)(0, -1, -1, -1, -1, -1, -1, -1, 0, -1, -1, -1, -1, -1, -1, -1)
 #define NOT_LAST (int16)(-1, -1, -1, -1, -1, -1, -1, 0, -1, -1, -1, -1, -1, -1, -1, 0)
 static Row first_row(Lanes v) { return v.lo; }
 static Row last_row(Lanes v) { return v.hi; }
 #else
 typedef float4 Row;
-#define LOAD_ROW(row, at) vload4(row, at)
-#define STORE_ROW(value, row, at) vstore4(value, row, at)
 #define NOT_FIRST (int16)(0, -1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1)
 #define NOT_LAST (int16)(-1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0)
 static Row first_row(Lanes v) { return v.s0123; }
 static Row last_row(Lanes v) { return v.scdef; }
 #endif
+
+// Rows and vectors of rows of a block's arrays, which are aligned to them. PoCL writes vstore16 in parts, too.
+#define ROW(row, at) (((global Row*)(at))[row])
+#define ROW_OF(row, at) (((const global Row*)(at))[row])
+#define LANES(v, at) (((global Lanes*)(at))[v])
+#define LANES_OF(v, at) (((const global Lanes*)(at))[v])
 
 // Rows moved one voxel up or down along x; zeros follow. By one permutation and a mask: PoCL stores vectors that are put together
 // from parts in parts, and whole loads then wait for them.
@@ -66,38 +68,40 @@ typedef struct {
   int walled;                     // arrivals at some face are not simply what the neighbour sent
 } Block;
 
-// Rows of y-neighbours. Slot `up` is read one row below (arrivals of +y), `down` one row above; the block's own values that come
-// from a face are `side`.
+// Rows of y-neighbours: slot `up` is read one row below (arrivals of +y), `down` one row above; `side` is what comes over a face.
 static Lanes rows_below(const global float* slot, int v, Row side) {
 #if EDGE == 8
-  return v % PER_PLANE == 0 ? (Lanes)(side, vload8(0, slot + 16 * v)) : vload16(0, slot + 16 * v - 8);
+  return (Lanes)(v % PER_PLANE == 0 ? side : ROW_OF(2 * v - 1, slot), ROW_OF(2 * v, slot));
 #else
-  return (Lanes)(side, vload8(0, slot + 16 * v), vload4(2, slot + 16 * v));
+  return (Lanes)(side, ROW_OF(4 * v, slot), ROW_OF(4 * v + 1, slot), ROW_OF(4 * v + 2, slot));
 #endif
 }
 static Lanes rows_above(const global float* slot, int v, Row side) {
 #if EDGE == 8
-  return v % PER_PLANE == PER_PLANE - 1 ? (Lanes)(vload8(0, slot + 16 * v + 8), side) : vload16(0, slot + 16 * v + 8);
+  return (Lanes)(ROW_OF(2 * v + 1, slot), v % PER_PLANE == PER_PLANE - 1 ? side : ROW_OF(2 * v + 2, slot));
 #else
-  return (Lanes)(vload8(0, slot + 16 * v + 4), vload4(3, slot + 16 * v), side);
+  return (Lanes)(ROW_OF(4 * v + 1, slot), ROW_OF(4 * v + 2, slot), ROW_OF(4 * v + 3, slot), side);
 #endif
 }
+// Puts the rows of f one row lower or higher; the one that leaves the block is dropped.
 static void to_rows_below(Lanes f, global float* slot, int v) {
 #if EDGE == 8
-  if (v % PER_PLANE == 0) vstore8(f.hi, 0, slot + 16 * v);
-  else vstore16(f, 0, slot + 16 * v - 8);
+  if (v % PER_PLANE != 0) ROW(2 * v - 1, slot) = f.lo;
+  ROW(2 * v, slot) = f.hi;
 #else
-  vstore8(f.s456789ab, 0, slot + 16 * v);
-  vstore4(f.scdef, 2, slot + 16 * v);
+  ROW(4 * v, slot) = f.s4567;
+  ROW(4 * v + 1, slot) = f.s89ab;
+  ROW(4 * v + 2, slot) = f.scdef;
 #endif
 }
 static void to_rows_above(Lanes f, global float* slot, int v) {
 #if EDGE == 8
-  if (v % PER_PLANE == PER_PLANE - 1) vstore8(f.lo, 0, slot + 16 * v + 8);
-  else vstore16(f, 0, slot + 16 * v + 8);
+  ROW(2 * v + 1, slot) = f.lo;
+  if (v % PER_PLANE != PER_PLANE - 1) ROW(2 * v + 2, slot) = f.hi;
 #else
-  vstore8(f.lo, 0, slot + 16 * v + 4);
-  vstore4(f.s89ab, 3, slot + 16 * v);
+  ROW(4 * v + 1, slot) = f.s0123;
+  ROW(4 * v + 2, slot) = f.s4567;
+  ROW(4 * v + 3, slot) = f.s89ab;
 #endif
 }
 
@@ -121,7 +125,7 @@ __attribute__((always_inline)) static void step(global float* slots, const Block
     const int z = v / PER_PLANE, j = v % PER_PLANE;
     Six f;
     if (crossing) {
-      const Lanes below = vload16(v, up_x), above = vload16(v, down_x);
+      const Lanes below = LANES_OF(v, up_x), above = LANES_OF(v, down_x);
       f.xp = shift_up(below) + in->x[0][v];
       f.xm = shift_down(above) + in->x[1][v];
       Row ym = in->y[0][z], yp = in->y[1][z];
@@ -129,38 +133,38 @@ __attribute__((always_inline)) static void step(global float* slots, const Block
       if (walled) {
         f.xp += wall->x[0][v] * above;
         f.xm += wall->x[1][v] * below;
-        ym += wall->y[0][z] * LOAD_ROW(EDGE * z, down_y);
-        yp += wall->y[1][z] * LOAD_ROW(EDGE * z + EDGE - 1, up_y);
-        zm += wall->z[0][j] * vload16(v, down_z);
-        zp += wall->z[1][j] * vload16(v, up_z);
+        ym += wall->y[0][z] * ROW_OF(EDGE * z, down_y);
+        yp += wall->y[1][z] * ROW_OF(EDGE * z + EDGE - 1, up_y);
+        zm += wall->z[0][j] * LANES_OF(v, down_z);
+        zp += wall->z[1][j] * LANES_OF(v, up_z);
       }
       f.yp = rows_below(up_y, v, ym);
       f.ym = rows_above(down_y, v, yp);
-      f.zp = z > 0 ? vload16(v - PER_PLANE, up_z) : zm;
-      f.zm = z < EDGE - 1 ? vload16(v + PER_PLANE, down_z) : zp;
+      f.zp = z > 0 ? LANES_OF(v - PER_PLANE, up_z) : zm;
+      f.zm = z < EDGE - 1 ? LANES_OF(v + PER_PLANE, down_z) : zp;
     } else {
-      f.xp = vload16(v, down_x);
-      f.xm = vload16(v, up_x);
-      f.yp = vload16(v, down_y);
-      f.ym = vload16(v, up_y);
-      f.zp = vload16(v, down_z);
-      f.zm = vload16(v, up_z);
+      f.xp = LANES_OF(v, down_x);
+      f.xm = LANES_OF(v, up_x);
+      f.yp = LANES_OF(v, down_y);
+      f.ym = LANES_OF(v, up_y);
+      f.zp = LANES_OF(v, down_z);
+      f.zm = LANES_OF(v, up_z);
     }
     Lanes p0 = block->p0, p1 = block->p1, q0 = (Lanes)(0.0f);
     if (block->collision) {
-      p0 = vload16(v, block->collision);
-      p1 = vload16(v, block->collision + VOXELS);
+      p0 = LANES_OF(v, block->collision);
+      p1 = LANES_OF(v, block->collision + VOXELS);
     }
-    if (block->source) q0 = vload16(v, block->source);
+    if (block->source) q0 = LANES_OF(v, block->source);
     const Lanes before = sum_of(f), after = (before - p0 * before) + q0;
     f = collide(f, before, after, p1);
     if (last) {
       const Lanes value = fluence_of(p0, p1, q0, before, after);
-      sums->change += fabs(value - vload16(v, fluence));
+      sums->change += fabs(value - LANES_OF(v, fluence));
       sums->total += value;
       sums->lost += before - after;
       sums->after += after;
-      vstore16(value, v, fluence);
+      LANES(v, fluence) = value;
     }
     sent->x[0][v] += f.xm;
     sent->x[1][v] += f.xp;
@@ -180,23 +184,23 @@ __attribute__((always_inline)) static void step(global float* slots, const Block
         at_zm += wall->z[0][j] * f.zm;
         at_zp += wall->z[1][j] * f.zp;
       }
-      vstore16(at_xm, v, down_x);
-      vstore16(at_xp, v, up_x);
+      LANES(v, down_x) = at_xm;
+      LANES(v, up_x) = at_xp;
       to_rows_below(f.ym, up_y, v);
       to_rows_above(f.yp, down_y, v);
-      if (j == 0) STORE_ROW(at_ym, EDGE * z, down_y);
-      if (j == PER_PLANE - 1) STORE_ROW(at_yp, EDGE * z + EDGE - 1, up_y);
-      if (z > 0) vstore16(f.zm, v - PER_PLANE, up_z);
-      else vstore16(at_zm, v, down_z);
-      if (z < EDGE - 1) vstore16(f.zp, v + PER_PLANE, down_z);
-      else vstore16(at_zp, v, up_z);
+      if (j == 0) ROW(EDGE * z, down_y) = at_ym;
+      if (j == PER_PLANE - 1) ROW(EDGE * z + EDGE - 1, up_y) = at_yp;
+      if (z > 0) LANES(v - PER_PLANE, up_z) = f.zm;
+      else LANES(v, down_z) = at_zm;
+      if (z < EDGE - 1) LANES(v + PER_PLANE, down_z) = f.zp;
+      else LANES(v, up_z) = at_zp;
     } else {
-      vstore16(f.xm, v, down_x);
-      vstore16(f.xp, v, up_x);
-      vstore16(f.ym, v, down_y);
-      vstore16(f.yp, v, up_y);
-      vstore16(f.zm, v, down_z);
-      vstore16(f.zp, v, up_z);
+      LANES(v, down_x) = f.xm;
+      LANES(v, up_x) = f.xp;
+      LANES(v, down_y) = f.ym;
+      LANES(v, up_y) = f.yp;
+      LANES(v, down_z) = f.zm;
+      LANES(v, up_z) = f.zp;
     }
   }
 }
@@ -232,8 +236,8 @@ static Lanes row_ends(const global float* values, int v, int upper) {
 static void load_faces(Faces* to, const global float* from[6]) {
   for (int side = 0; side < 2; ++side) {
     for (int v = 0; v < VECTORS; ++v) to->x[side][v] = row_ends(from[side], v, side);
-    for (int z = 0; z < EDGE; ++z) to->y[side][z] = LOAD_ROW(z, from[2 + side]);
-    for (int j = 0; j < PER_PLANE; ++j) to->z[side][j] = vload16(j, from[4 + side]);
+    for (int z = 0; z < EDGE; ++z) to->y[side][z] = ROW_OF(z, from[2 + side]);
+    for (int j = 0; j < PER_PLANE; ++j) to->z[side][j] = LANES_OF(j, from[4 + side]);
   }
 }
 
@@ -241,11 +245,11 @@ static void load_faces(Faces* to, const global float* from[6]) {
 static void add_arrivals(global float* slots, const Faces* in) {
   for (int side = 0; side < 2; ++side) {
     global float* slot = slots + side * VOXELS;
-    for (int v = 0; v < VECTORS; ++v) vstore16(vload16(v, slot) + in->x[side][v], v, slot);
+    for (int v = 0; v < VECTORS; ++v) LANES(v, slot) = LANES_OF(v, slot) + in->x[side][v];
     slot = slots + (2 + side) * VOXELS + side * (EDGE - 1) * EDGE;
-    for (int z = 0; z < EDGE; ++z) STORE_ROW(LOAD_ROW(EDGE * z, slot) + in->y[side][z], EDGE * z, slot);
+    for (int z = 0; z < EDGE; ++z) ROW(EDGE * z, slot) = ROW_OF(EDGE * z, slot) + in->y[side][z];
     slot = slots + (4 + side) * VOXELS + side * (EDGE - 1) * ROWS;
-    for (int j = 0; j < PER_PLANE; ++j) vstore16(vload16(j, slot) + in->z[side][j], j, slot);
+    for (int j = 0; j < PER_PLANE; ++j) LANES(j, slot) = LANES_OF(j, slot) + in->z[side][j];
   }
 }
 
@@ -265,12 +269,12 @@ static void send(const Faces* sent, global float* faces, float mean) {
 #endif
   }
   for (int z = 0; z < EDGE; ++z) {
-    STORE_ROW(mean * sent->y[1][z], z, faces + 2 * ROWS);
-    STORE_ROW(mean * sent->y[0][z], z, faces + 3 * ROWS);
+    ROW(z, faces + 2 * ROWS) = mean * sent->y[1][z];
+    ROW(z, faces + 3 * ROWS) = mean * sent->y[0][z];
   }
   for (int j = 0; j < PER_PLANE; ++j) {
-    vstore16(mean * sent->z[1][j], j, faces + 4 * ROWS);
-    vstore16(mean * sent->z[0][j], j, faces + 5 * ROWS);
+    LANES(j, faces + 4 * ROWS) = mean * sent->z[1][j];
+    LANES(j, faces + 5 * ROWS) = mean * sent->z[0][j];
   }
 }
 
@@ -347,7 +351,7 @@ kernel void departures(const global int* wall_block, const global float* walls, 
   const size_t index = (size_t)channel * blocks + block;
   const global float* slots = populations + index * 6 * VOXELS;
   Lanes total = (Lanes)(0.0f);
-  for (int v = 0; v < 6 * VECTORS; ++v) total += vload16(v, slots);
+  for (int v = 0; v < 6 * VECTORS; ++v) total += LANES_OF(v, slots);
   float escaped[6] = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   if (wall_block[block] >= 0) {
     const global float* own = walls + ((size_t)channel * wall_blocks + wall_block[block]) * 12 * ROWS;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lattice of lattice.cl as one whole, streamed in place (Bailey et al. 2009): single steps with one copy of the populations.
 //
-// Rows along x of neighbouring blocks are joined to runs; one work-item does one row, and rows follow one another in memory. A local step reads the arrivals of a voxel
-// from its own slots and leaves what departs in the opposite slots; a crossing step reads arrivals from where the neighbours left
-// them and puts what departs where the neighbours read next. Each place is read and written by one voxel, so nothing depends on
-// the order. Towards a missing block a crossing step stays at the voxel's own slot and multiplies by the wall's R, both ways
-// (boundary: f_in = R f_out, numerics section 3). What meets at other boundaries and at index jumps is mixed by `exchange`.
+// Rows along x of neighbouring blocks are joined to runs; one work-item does one row, and rows follow one another in memory. A
+// local step reads the arrivals of a voxel from its own slots and leaves what departs in the opposite slots; a crossing step reads
+// arrivals from where the neighbours left them and puts what departs where the neighbours read next. Each place is read and
+// written by one voxel, so nothing depends on the order. Towards a missing block a crossing step stays at the voxel's own slot and
+// multiplies by the wall's R, both ways (boundary: f_in = R f_out, numerics section 3). What meets at other boundaries and at
+// index jumps is mixed by `exchange`.
 //
 // Slots are [channel][population][places]; a row has eight places before its first voxel and eight after its last (those before
 // the next row). Slot 2 axis ("down") holds arrivals of population 2 axis and, after a local step, departures of 2 axis + 1; slot
@@ -14,6 +15,10 @@
 
 typedef float8 Lanes;
 #include "lib/collision.h"
+
+// Eight aligned places: PoCL writes vstore8 in parts.
+#define EIGHT(at) (*(const global float8*)(at))
+#define PUT_EIGHT(at) (*(global float8*)(at))
 
 static float sum8(float8 v) {
   const float4 half_sum = v.lo + v.hi;
@@ -48,13 +53,13 @@ static Side side_of(global float* own, global float* other, const global float* 
 }
 
 static float8 read_side(Side side) {
-  const float8 f = vload8(0, side.slot);
-  return side.wall ? f * vload8(0, side.wall) : f;
+  const float8 f = EIGHT(side.slot);
+  return side.wall ? f * EIGHT(side.wall) : f;
 }
 
-static void write_side(Side side, float8 f) { vstore8(side.wall ? f * vload8(0, side.wall) : f, 0, side.slot); }
+static void write_side(Side side, float8 f) { PUT_EIGHT(side.slot) = side.wall ? f * EIGHT(side.wall) : f; }
 
-static float escaped_over(Side side, float8 f) { return side.wall ? sum8((1.0f - vload8(0, side.wall)) * f) : 0.0f; }
+static float escaped_over(Side side, float8 f) { return side.wall ? sum8((1.0f - EIGHT(side.wall)) * f) : 0.0f; }
 
 static void step_row(global float* slots, MEDIUM_ARGUMENTS, global float* fluence, global float* sums, const int crossing,
                      const int measure) {
@@ -100,30 +105,30 @@ static void step_row(global float* slots, MEDIUM_ARGUMENTS, global float* fluenc
       f.zp = read_side(zm);
       f.zm = read_side(zp);
     } else {
-      f.xp = vload8(0, down_x + at);
-      f.xm = vload8(0, up_x + at);
-      f.yp = vload8(0, down_y + at);
-      f.ym = vload8(0, up_y + at);
-      f.zp = vload8(0, down_z + at);
-      f.zm = vload8(0, up_z + at);
+      f.xp = EIGHT(down_x + at);
+      f.xm = EIGHT(up_x + at);
+      f.yp = EIGHT(down_y + at);
+      f.ym = EIGHT(up_y + at);
+      f.zp = EIGHT(down_z + at);
+      f.zm = EIGHT(up_z + at);
     }
     const float2 same = even[(size_t)channel * block_count + block];
     float8 p0 = (float8)(same.x), p1 = (float8)(same.y), q0 = (float8)(0.0f);
     if (same.x < 0.0f) {
-      p0 = vload8(0, c0 + at);
-      p1 = vload8(0, c1 + at);
+      p0 = EIGHT(c0 + at);
+      p1 = EIGHT(c1 + at);
     }
-    if (lit[(size_t)channel * block_count + block]) q0 = vload8(0, q + at);
+    if (lit[(size_t)channel * block_count + block]) q0 = EIGHT(q + at);
     const float8 before = sum_of(f), after = (before - p0 * before) + q0;
     f = collide(f, before, after, p1);
     if (measure) {
       global float* psi = fluence + (size_t)channel * places + at;
       const float8 value = fluence_of(p0, p1, q0, before, after);
-      change += fabs(value - vload8(0, psi));
+      change += fabs(value - EIGHT(psi));
       total += value;
       lost += before - after;
       arrived += before;
-      vstore8(value, 0, psi);
+      PUT_EIGHT(psi) = value;
       if (k == 0 && end.x < 0) escaped_xm = (1.0f - end_wall.x) * f.xm.s0;
       if (k == last && end.y < 0) escaped_xp = (1.0f - end_wall.y) * f.xp.s7;
       escaped_ym += escaped_over(ym, f.ym);
@@ -147,12 +152,12 @@ static void step_row(global float* slots, MEDIUM_ARGUMENTS, global float* fluenc
       write_side(zm, f.zm);
       write_side(zp, f.zp);
     } else {
-      vstore8(f.xm, 0, down_x + at);
-      vstore8(f.xp, 0, up_x + at);
-      vstore8(f.ym, 0, down_y + at);
-      vstore8(f.yp, 0, up_y + at);
-      vstore8(f.zm, 0, down_z + at);
-      vstore8(f.zp, 0, up_z + at);
+      PUT_EIGHT(down_x + at) = f.xm;
+      PUT_EIGHT(up_x + at) = f.xp;
+      PUT_EIGHT(down_y + at) = f.ym;
+      PUT_EIGHT(up_y + at) = f.yp;
+      PUT_EIGHT(down_z + at) = f.zm;
+      PUT_EIGHT(up_z + at) = f.zp;
     }
   }
   if (measure) {

@@ -8,6 +8,7 @@
 
 #include "host/bench/figures.h"
 #include "host/bench/hard_media.h"
+#include "host/bench/measure_blocks.h"
 #include "host/profile/ceilings.h"
 #include "host/profile/spread.h"
 #include "host/transport/lattice_scheme.h"
@@ -143,7 +144,7 @@ Goal iterations(cl::Session& session, int largest) {
 }  // namespace
 
 std::vector<Goal> measure_lattice(cl::Session& session, int voxels, int solve_voxels, int repeats) {
-  return {single_step(session, voxels, repeats), plain_steps_against_solve(session, solve_voxels, repeats),
+  return {single_step(session, voxels, repeats), blocked_steps(session, voxels, repeats), plain_steps_against_solve(session, solve_voxels, repeats),
           iterations(session, solve_voxels)};
 }
 

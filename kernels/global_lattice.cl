@@ -1,134 +1,199 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lattice of lattice.cl as one whole, streamed in place (Bailey et al. 2009): single steps with one copy of the populations.
 //
-// Rows along x of neighbouring blocks are joined to runs; one work-item does one row. Population i is kept in slot[i]. A local step
-// reads the arrivals of a voxel from its own slots and leaves what departs in the opposite slots; a crossing step reads arrivals
-// from where the neighbours left them and puts what departs where the neighbours read next. Each place is read and written by one
-// voxel, so nothing depends on the order. `exchange` then mixes what meets at boundaries and index jumps.
+// Rows along x of neighbouring blocks are joined to runs; one work-item does one row, and rows follow one another in memory. A
+// local step reads the arrivals of a voxel from its own slots and leaves what departs in the opposite slots; a crossing step reads
+// arrivals from where the neighbours left them and puts what departs where the neighbours read next. Each place is read and
+// written by one voxel, so nothing depends on the order. Towards a missing block a crossing step stays at the voxel's own slot and
+// multiplies by the wall's R, both ways (boundary: f_in = R f_out, numerics section 3). What meets at other boundaries and at
+// index jumps is mixed by `exchange`.
 //
 // Slots are [channel][population][places]; a row has eight places before its first voxel and eight after its last (those before
-// the next row); what lies beyond missing blocks has places at the end.
+// the next row). Slot 2 axis ("down") holds arrivals of population 2 axis and, after a local step, departures of 2 axis + 1; slot
+// 2 axis + 1 ("up") the reverse.
 #include "shared/lattice_params.h"
 
-#if !defined(TURBID_COLLISION)
-#error "TURBID_COLLISION (0 paper, 1 exponential, 2 trapezoid, 3 trt) must be defined"
-#endif
+typedef float8 Lanes;
+#include "lib/collision.h"
+
+// Eight aligned places: PoCL writes vstore8 in parts.
+#define EIGHT(at) (*(const global float8*)(at))
+#define PUT_EIGHT(at) (*(global float8*)(at))
 
 static float sum8(float8 v) {
   const float4 half_sum = v.lo + v.hi;
   return (half_sum.x + half_sum.y) + (half_sum.z + half_sum.w);
 }
 
-// phi' = (1 - p0) phi + q0 and the moments' relaxation (lattice.cl); two-relaxation-time: p2 = 4 / (s + 2) = 2 - p1.
-static void collide(float8* f, float8 p0, float8 p1, float8 q0, float8* before, float8* after) {
-  const float8 phi = ((f[0] + f[1]) + (f[2] + f[3])) + (f[4] + f[5]);
-  const float8 phi_new = (1.0f - p0) * phi + q0;
-#if TURBID_COLLISION == 3
-  const float8 keep_even = p1 - 1.0f;
-#else
-  const float8 keep_even = 1.0f - p1;
-#endif
-  const float8 keep_odd = 0.5f * (1.0f - p1), base = phi_new * (1.0f / 6.0f), third = phi * (1.0f / 3.0f);
-  for (int axis = 0; axis < 3; ++axis) {
-    const float8 even = base + 0.5f * keep_even * (f[2 * axis] + f[2 * axis + 1] - third);
-    const float8 odd = keep_odd * (f[2 * axis] - f[2 * axis + 1]);
-    f[2 * axis] = even + odd;
-    f[2 * axis + 1] = even - odd;
-  }
-  *before = phi;
-  *after = phi_new;
+// What the kernels below are given. rows[row]: place of the first voxel, first block, blocks, row within the run (y + 8 z).
+// ends[row]: places of the voxels beyond its ends, < 0: a wall, whose R is end_walls[channel][row]; distance to the next row in
+// y, in z. near[block][-y, +y, -z, +z]:
+// place of the first row beyond the face and distance to the next one, or (-1 - wall, 0); walls[channel][wall][row][x]: R.
+// even[channel][block]: p0 and p1 of all the block's voxels, or p0 < 0 where collision[channel][p0, p1][place] differs between
+// them. lit[channel][block]: whether anything in source[channel][place] is not zero.
+#define MEDIUM_ARGUMENTS                                                                                                      \
+  const global float *collision, const global float2 *even, const global float *source, const global int *lit,                \
+      const global int4 *rows, const global int4 *ends, const global float2 *end_walls, const global int2 *near,              \
+      const global float *walls, int row_count, int block_count, int wall_count, int places, int channels
+#define MEDIUM                                                                                                          \
+  collision, even, source, lit, rows, ends, end_walls, near, walls, row_count, block_count, wall_count, places, channels
+
+// Where a row's arrivals over one side are read and its departures written; 0 or the wall's R.
+typedef struct {
+  global float* slot;
+  const global float* wall;
+} Side;
+
+// What lies beyond a block: `own` is the voxels' slot if there is a wall, `other` the neighbours' slot.
+static Side side_of(global float* own, global float* other, const global float* walls, int2 near, int at, int along) {
+  Side side;
+  side.slot = near.x >= 0 ? other + near.x + along * near.y : own + at;
+  side.wall = near.x >= 0 ? 0 : walls + (size_t)(-1 - near.x) * 64 + 8 * along;
+  return side;
 }
 
-static float8 fluence_of(float8 p0, float8 p1, float8 q0, float8 before, float8 after) {
-#if TURBID_COLLISION == 0
-  return before;
-#elif TURBID_COLLISION == 1
-  const float8 s = -log1p(-p1);  // p1 = 1 - e^-s
-  return s > 0.0f ? before * p1 / s : before;
-#elif TURBID_COLLISION == 2
-  return 0.5f * (before + after);
-#else
-  // psi = m - (s_a' m - q*) s / 4 (numerics section 1).
-  const float8 s = p1 / (1.0f - 0.5f * p1), absorbed = p0 / (1.0f - 0.5f * p0);
-  const float8 mean = 0.5f * (before + after), q_star = q0 * (1.0f + 0.5f * absorbed);
-  return mean - 0.25f * s * (absorbed * mean - q_star);
-#endif
+static float8 read_side(Side side) {
+  const float8 f = EIGHT(side.slot);
+  return side.wall ? f * EIGHT(side.wall) : f;
 }
 
-// One step of every row. rows[row]: place of the first voxel, first block, blocks, row within the run (y + 8 z).
-// near[block][-y, +y, -z, +z]: place of the first row beyond the face, distance to the next one. measure = 1: fluence is written and
-// sums[channel][row][4] = summed |its change|, its sum, sum of phi - phi', sum of arrivals.
-kernel void step_in_place(global float* slots, const global float* collision, const global float* source, const global int4* rows,
-                 const global int2* near, global float* fluence, global float* sums, int row_count, int places, int channels,
-                 int crossing, int measure) {
+static void write_side(Side side, float8 f) { PUT_EIGHT(side.slot) = side.wall ? f * EIGHT(side.wall) : f; }
+
+static float escaped_over(Side side, float8 f) { return side.wall ? sum8((1.0f - EIGHT(side.wall)) * f) : 0.0f; }
+
+static void step_row(global float* slots, MEDIUM_ARGUMENTS, global float* fluence, global float* sums, const int crossing,
+                     const int measure) {
   const int row_index = get_global_id(0), channel = get_global_id(1);
   if (row_index >= row_count || channel >= channels) return;
-  const int4 row = rows[row_index];
-  const int y = row.w & 7, z = row.w >> 3, length = 8 * row.z + 8;
-  global float* slot = slots + (size_t)channel * 6 * places;
-  const global float* c = collision + (size_t)channel * 2 * places;
+  const int4 row = rows[row_index], end = ends[row_index];
+  const float2 end_wall = end_walls[(size_t)channel * row_count + row_index];
+  const int y = row.w & 7, z = row.w >> 3, last = row.z - 1;
+  global float* down_x = slots + (size_t)channel * 6 * places;
+  global float* up_x = down_x + places;
+  global float* down_y = up_x + places;
+  global float* up_y = down_y + places;
+  global float* down_z = up_y + places;
+  global float* up_z = down_z + places;
+  const global float* c0 = collision + (size_t)channel * 2 * places;
+  const global float* c1 = c0 + places;
   const global float* q = source + (size_t)channel * places;
-  global float* psi = fluence + (size_t)channel * places;
+  const global float* wall = walls + (size_t)channel * wall_count * 64;
   float8 change = (float8)(0.0f), total = change, lost = change, arrived = change;
-  for (int block = 0; block < row.z; ++block) {
-    const int at = row.x + 8 * block;
-    int from[6] = {at, at, at, at, at, at}, to[6] = {at, at, at, at, at, at};
-    if (crossing) {
-      const global int2* beyond = near + 4 * (row.y + block);
-      const int ym = y > 0 ? at - length : beyond[0].x + z * beyond[0].y;
-      const int yp = y < 7 ? at + length : beyond[1].x + z * beyond[1].y;
-      const int zm = z > 0 ? at - 8 * length : beyond[2].x + y * beyond[2].y;
-      const int zp = z < 7 ? at + 8 * length : beyond[3].x + y * beyond[3].y;
-      from[0] = to[1] = at - 1;
-      from[1] = to[0] = at + 1;
-      from[2] = to[3] = ym;
-      from[3] = to[2] = yp;
-      from[4] = to[5] = zm;
-      from[5] = to[4] = zp;
+  float escaped_xm = 0.0f, escaped_xp = 0.0f, escaped_ym = 0.0f, escaped_yp = 0.0f, escaped_zm = 0.0f, escaped_zp = 0.0f;
+  for (int k = 0; k < row.z; ++k) {
+    const int at = row.x + 8 * k, block = row.y + k;
+    Side ym, yp, zm, zp;
+    if (crossing || measure) {
+      ym.slot = up_y + at - end.z;
+      yp.slot = down_y + at + end.z;
+      zm.slot = up_z + at - end.w;
+      zp.slot = down_z + at + end.w;
+      ym.wall = yp.wall = zm.wall = zp.wall = 0;
+      if (y == 0) ym = side_of(down_y, up_y, wall, near[4 * block], at, z);
+      if (y == 7) yp = side_of(up_y, down_y, wall, near[4 * block + 1], at, z);
+      if (z == 0) zm = side_of(down_z, up_z, wall, near[4 * block + 2], at, y);
+      if (z == 7) zp = side_of(up_z, down_z, wall, near[4 * block + 3], at, y);
     }
-    float8 f[6];
-    for (int i = 0; i < 6; ++i) f[i] = vload8(0, slot + (size_t)(crossing ? i ^ 1 : i) * places + from[i]);
-    const float8 p0 = vload8(0, c + at), p1 = vload8(0, c + places + at), q0 = vload8(0, q + at);
-    if (measure) arrived += ((f[0] + f[1]) + (f[2] + f[3])) + (f[4] + f[5]);
-    float8 before, after;
-    collide(f, p0, p1, q0, &before, &after);
-    for (int i = 0; i < 6; ++i) vstore8(f[i], 0, slot + (size_t)(crossing ? i : i ^ 1) * places + to[i]);
+    Six f;
+    if (crossing) {
+      f.xp = vload8(0, up_x + at - 1);
+      f.xm = vload8(0, down_x + at + 1);
+      if (k == 0) f.xp.s0 = end.x < 0 ? end_wall.x * down_x[at] : up_x[end.x];
+      if (k == last) f.xm.s7 = end.y < 0 ? end_wall.y * up_x[at + 7] : down_x[end.y];
+      f.yp = read_side(ym);
+      f.ym = read_side(yp);
+      f.zp = read_side(zm);
+      f.zm = read_side(zp);
+    } else {
+      f.xp = EIGHT(down_x + at);
+      f.xm = EIGHT(up_x + at);
+      f.yp = EIGHT(down_y + at);
+      f.ym = EIGHT(up_y + at);
+      f.zp = EIGHT(down_z + at);
+      f.zm = EIGHT(up_z + at);
+    }
+    const float2 same = even[(size_t)channel * block_count + block];
+    float8 p0 = (float8)(same.x), p1 = (float8)(same.y), q0 = (float8)(0.0f);
+    if (same.x < 0.0f) {
+      p0 = EIGHT(c0 + at);
+      p1 = EIGHT(c1 + at);
+    }
+    if (lit[(size_t)channel * block_count + block]) q0 = EIGHT(q + at);
+    const float8 before = sum_of(f), after = (before - p0 * before) + q0;
+    f = collide(f, before, after, p1);
     if (measure) {
+      global float* psi = fluence + (size_t)channel * places + at;
       const float8 value = fluence_of(p0, p1, q0, before, after);
-      change += fabs(value - vload8(0, psi + at));
+      change += fabs(value - EIGHT(psi));
       total += value;
       lost += before - after;
-      vstore8(value, 0, psi + at);
+      arrived += before;
+      PUT_EIGHT(psi) = value;
+      if (k == 0 && end.x < 0) escaped_xm = (1.0f - end_wall.x) * f.xm.s0;
+      if (k == last && end.y < 0) escaped_xp = (1.0f - end_wall.y) * f.xp.s7;
+      escaped_ym += escaped_over(ym, f.ym);
+      escaped_yp += escaped_over(yp, f.yp);
+      escaped_zm += escaped_over(zm, f.zm);
+      escaped_zp += escaped_over(zp, f.zp);
+    }
+    if (crossing) {
+      vstore8(f.xm, 0, up_x + at - 1);
+      vstore8(f.xp, 0, down_x + at + 1);
+      if (k == 0) {
+        if (end.x < 0) down_x[at] = end_wall.x * f.xm.s0;
+        else up_x[end.x] = f.xm.s0;
+      }
+      if (k == last) {
+        if (end.y < 0) up_x[at + 7] = end_wall.y * f.xp.s7;
+        else down_x[end.y] = f.xp.s7;
+      }
+      write_side(ym, f.ym);
+      write_side(yp, f.yp);
+      write_side(zm, f.zm);
+      write_side(zp, f.zp);
+    } else {
+      PUT_EIGHT(down_x + at) = f.xm;
+      PUT_EIGHT(up_x + at) = f.xp;
+      PUT_EIGHT(down_y + at) = f.ym;
+      PUT_EIGHT(up_y + at) = f.yp;
+      PUT_EIGHT(down_z + at) = f.zm;
+      PUT_EIGHT(up_z + at) = f.zp;
     }
   }
-  if (measure) vstore4((float4)(sum8(change), sum8(total), sum8(lost), sum8(arrived)), 0,
-                       sums + 4 * ((size_t)channel * row_count + row_index));
+  if (measure) {
+    global float* out = sums + 10 * ((size_t)channel * row_count + row_index);
+    vstore4((float4)(sum8(change), sum8(total), sum8(lost), sum8(arrived)), 0, out);
+    vstore4((float4)(escaped_xm, escaped_xp, escaped_ym, escaped_yp), 1, out);
+    vstore2((float2)(escaped_zm, escaped_zp), 4, out);
+  }
 }
 
-// Faces where arrivals are not simply what the neighbour sent. A face along an axis has the voxels x below and y above it;
-// faces[face] = places p, q where a local step leaves what x and y send (slots 2 axis + 1 and 2 axis) and p', q' where a crossing
-// step reads what arrives at y and x; these differ at periodic seams only. links[channel][face] = (own, other) of y, then of x:
-// arrivals at y = own_y (from y) + other_y (from x). lost[channel][face]: power that went in and did not come out.
-kernel void exchange(global float* slots, const global int4* faces, const global int* axes, const global float4* links,
-                     global float* lost, int face_count, int places, int channels, int crossed, int measure) {
+kernel void step_local(global float* slots, MEDIUM_ARGUMENTS) { step_row(slots, MEDIUM, 0, 0, 0, 0); }
+kernel void step_crossing(global float* slots, MEDIUM_ARGUMENTS) { step_row(slots, MEDIUM, 0, 0, 1, 0); }
+
+// The same, and the fluence is written and sums[channel][row][10] = summed |its change|, its sum, sum of phi - phi', sum of
+// arrivals, power that escapes through the walls towards -x, +x, -y, +y, -z, +z.
+kernel void measure_local(global float* slots, MEDIUM_ARGUMENTS, global float* fluence, global float* sums) {
+  step_row(slots, MEDIUM, fluence, sums, 0, 1);
+}
+kernel void measure_crossing(global float* slots, MEDIUM_ARGUMENTS, global float* fluence, global float* sums) {
+  step_row(slots, MEDIUM, fluence, sums, 1, 1);
+}
+
+// Faces inside the blocks where arrivals are not simply what the neighbour sent: faces[face] = places of the voxel x below and y
+// above it, axis. links[channel][face] = (own, other) of y, then of x: arrivals at y = own_y (from y) + other_y (from x).
+// lost[channel][face]: power that went in and did not come out.
+kernel void exchange(global float* slots, const global int4* faces, const global float4* links, global float* lost,
+                     int face_count, int places, int channels, int crossed, int measure) {
   const int face = get_global_id(0), channel = get_global_id(1);
   if (face >= face_count || channel >= channels) return;
   const int4 place = faces[face];
-  const int axis = axes[face];
-  global float* up = slots + ((size_t)channel * 6 + 2 * axis + 1) * places;  // slot 2 axis + 1: place p
-  global float* down = slots + ((size_t)channel * 6 + 2 * axis) * places;    // slot 2 axis: place q
-  const float from_x = crossed ? down[place.w] : up[place.x];
-  const float from_y = crossed ? up[place.z] : down[place.y];
+  global float* down = slots + ((size_t)channel * 6 + 2 * place.z) * places + place.y;
+  global float* up = slots + ((size_t)channel * 6 + 2 * place.z + 1) * places + place.x;
+  const float from_x = crossed ? *down : *up, from_y = crossed ? *up : *down;
   const float4 k = links[(size_t)channel * face_count + face];
   const float at_y = k.x * from_y + k.y * from_x, at_x = k.z * from_x + k.w * from_y;
-  if (crossed) {
-    down[place.w] = up[place.z] = 0.0f;
-    down[place.y] = at_y;
-    up[place.x] = at_x;
-  } else {
-    up[place.x] = down[place.y] = 0.0f;
-    up[place.z] = at_y;
-    down[place.w] = at_x;
-  }
+  *down = crossed ? at_y : at_x;
+  *up = crossed ? at_x : at_y;
   if (measure) lost[(size_t)channel * face_count + face] = from_x + from_y - at_x - at_y;
 }

@@ -1,238 +1,375 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blockwise lattice-Boltzmann diffusion (Bernabei et al. III-C, Eq. 4-5, corrected and with other collisions): blocks of
-// edge^3 voxels iterate alone while what their neighbours last sent waits in interface buffers.
+// Blockwise lattice-Boltzmann diffusion (Bernabei et al. III-C, Eq. 4-5, corrected and with other collisions, lib/collision.h):
+// blocks of edge^3 voxels iterate alone while what their neighbours last sent waits in interface buffers.
 //
-// Populations f_i travel along i = +x, -x, +y, -y, +z, -z. With phi = sum f, S_k = f_k+ + f_k-, A_k = f_k+ - f_k-:
-//     phi' = (1 - p0) phi + q0;   S_k' = phi'/3 + (1 - p2) (S_k - phi/3);   A_k' = (1 - p1) A_k
-// (numerics section 1: absorption is a sink and the source is separate, unlike in the printed matrix, whose columns sum to 1.)
-// What is stored is the state after collision; a step pulls it from the neighbours and collides.
-//
-// One work-item per block and channel; rows of `edge` voxels along x are vectors.
+// One work-item per block and channel, sixteen voxels (two or four rows along x) to a vector. Inside a block populations stream in
+// place (Bailey et al. 2009), which halves what the cache must hold: a crossing step reads a voxel's arrivals from where its
+// neighbours left them and puts its departures where they read next, a local step reads and leaves them in the voxel's own slots.
+// Each place is read and written by one voxel. Slots are [6][voxel]: slot 2 axis ("down") holds arrivals of population 2 axis,
+// or departures of 2 axis + 1 after a local step; slot 2 axis + 1 ("up") the reverse. Crossing steps come first, and alternate.
 #include "shared/lattice_params.h"
 
-#if !defined(TURBID_EDGE) || !defined(TURBID_COLLISION)
-#error "TURBID_EDGE (4 or 8) and TURBID_COLLISION (0 paper, 1 exponential, 2 trapezoid, 3 trt) must be defined"
+#if !defined(TURBID_EDGE)
+#error "TURBID_EDGE (4 or 8) must be defined"
 #endif
+
+typedef float16 Lanes;
+#include "lib/collision.h"
 
 #define EDGE TURBID_EDGE
 #define ROWS (EDGE * EDGE)
 #define VOXELS (EDGE * EDGE * EDGE)
+#define VECTORS (VOXELS / 16)
+#define PER_PLANE (VECTORS / EDGE)
+
 #if EDGE == 8
 typedef float8 Row;
-#define LOAD_ROW(row, at) vload8(row, at)
-#define STORE_ROW(value, row, at) vstore8(value, row, at)
-static Row shift_up(Row v, float first) { return (Row)(first, v.s0123, v.s456); }
-static Row shift_down(Row v, float last) { return (Row)(v.s1234, v.s567, last); }
-static float row_sum(Row v) { return ((v.s0 + v.s4) + (v.s1 + v.s5)) + ((v.s2 + v.s6) + (v.s3 + v.s7)); }
+#define NOT_FIRST (int16)(0, -1, -1, -1, -1, -1, -1, -1, 0, -1, -1, -1, -1, -1, -1, -1)
+#define NOT_LAST (int16)(-1, -1, -1, -1, -1, -1, -1, 0, -1, -1, -1, -1, -1, -1, -1, 0)
+static Row first_row(Lanes v) { return v.lo; }
+static Row last_row(Lanes v) { return v.hi; }
 #else
 typedef float4 Row;
-#define LOAD_ROW(row, at) vload4(row, at)
-#define STORE_ROW(value, row, at) vstore4(value, row, at)
-static Row shift_up(Row v, float first) { return (Row)(first, v.s012); }
-static Row shift_down(Row v, float last) { return (Row)(v.s123, last); }
-static float row_sum(Row v) { return (v.s0 + v.s2) + (v.s1 + v.s3); }
+#define NOT_FIRST (int16)(0, -1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1)
+#define NOT_LAST (int16)(-1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0)
+static Row first_row(Lanes v) { return v.s0123; }
+static Row last_row(Lanes v) { return v.scdef; }
 #endif
 
+// Rows and vectors of rows of a block's arrays, which are aligned to them. PoCL writes vstore16 in parts, too.
+#define ROW(row, at) (((global Row*)(at))[row])
+#define ROW_OF(row, at) (((const global Row*)(at))[row])
+#define LANES(v, at) (((global Lanes*)(at))[v])
+#define LANES_OF(v, at) (((const global Lanes*)(at))[v])
+
+// Rows moved one voxel up or down along x; zeros follow. By one permutation and a mask: PoCL stores vectors that are put together
+// from parts in parts, and whole loads then wait for them.
+static Lanes shift_up(Lanes v) { return as_float16(as_int16(v.sf0123456789abcde) & NOT_FIRST); }
+static Lanes shift_down(Lanes v) { return as_float16(as_int16(v.s123456789abcdef0) & NOT_LAST); }
+
+static float sum16(Lanes v) {
+  const float8 half_sum = v.lo + v.hi;
+  const float4 quarter = half_sum.lo + half_sum.hi;
+  return (quarter.x + quarter.y) + (quarter.z + quarter.w);
+}
+
+// Something at each face of a block, -x, +x, -y, ...: across x in the end lanes of whole vectors.
 typedef struct {
-  Row f[6];
-} Populations;
+  Lanes x[2][VECTORS];
+  Row y[2][EDGE];
+  Lanes z[2][PER_PLANE];
+} Faces;
 
 // A block's constant data for one channel.
 typedef struct {
-  const global float* collision;  // [p0 | p1 | p2 | weight][voxel]
-  const global float* source;     // q0 [voxel]
-  const global float* links;      // [own 0..5 | other 0..5][voxel], or 0 where every face is open to an equal neighbour
-  const global float* incoming[6];  // interface buffers of the neighbours, [ROWS] each
+  const global float* collision;  // [p0 | p1][voxel], or 0 where they are the same in all voxels:
+  Lanes p0, p1;
+  const global float* source;     // q0 [voxel], or 0 where it is dark
+  int walled;                     // arrivals at some face are not simply what the neighbour sent
 } Block;
 
-static Block block_data(const global float* collision, const global float* source, const global int* link_block,
-                        const global float* links, const global float* interfaces, const global int* neighbours,
-                        int blocks, int link_blocks, int block, int channel) {
-  Block data;
-  const size_t index = (size_t)channel * blocks + block;
-  data.collision = collision + index * 4 * VOXELS;
-  data.source = source + index * VOXELS;
-  const int link = link_block[block];
-  data.links = link >= 0 ? links + ((size_t)channel * link_blocks + link) * 12 * VOXELS : 0;
-  for (int i = 0; i < 6; ++i) {
-    // Directions are numbered +x, -x, ... and faces -x, +x, ...: population +x (0) arrives over the face -x (0).
-    const int from = neighbours[6 * block + i];
-    data.incoming[i] = interfaces + (((size_t)channel * (blocks + 1) + from) * 6 + i) * ROWS;
-  }
-  return data;
+// Rows of y-neighbours: slot `up` is read one row below (arrivals of +y), `down` one row above; `side` is what comes over a face.
+static Lanes rows_below(const global float* slot, int v, Row side) {
+#if EDGE == 8
+  return (Lanes)(v % PER_PLANE == 0 ? side : ROW_OF(2 * v - 1, slot), ROW_OF(2 * v, slot));
+#else
+  return (Lanes)(side, ROW_OF(4 * v, slot), ROW_OF(4 * v + 1, slot), ROW_OF(4 * v + 2, slot));
+#endif
+}
+static Lanes rows_above(const global float* slot, int v, Row side) {
+#if EDGE == 8
+  return (Lanes)(ROW_OF(2 * v + 1, slot), v % PER_PLANE == PER_PLANE - 1 ? side : ROW_OF(2 * v + 2, slot));
+#else
+  return (Lanes)(ROW_OF(4 * v + 1, slot), ROW_OF(4 * v + 2, slot), ROW_OF(4 * v + 3, slot), side);
+#endif
+}
+// Puts the rows of f one row lower or higher; the one that leaves the block is dropped.
+static void to_rows_below(Lanes f, global float* slot, int v) {
+#if EDGE == 8
+  if (v % PER_PLANE != 0) ROW(2 * v - 1, slot) = f.lo;
+  ROW(2 * v, slot) = f.hi;
+#else
+  ROW(4 * v, slot) = f.s4567;
+  ROW(4 * v + 1, slot) = f.s89ab;
+  ROW(4 * v + 2, slot) = f.scdef;
+#endif
+}
+static void to_rows_above(Lanes f, global float* slot, int v) {
+#if EDGE == 8
+  ROW(2 * v + 1, slot) = f.lo;
+  if (v % PER_PLANE != PER_PLANE - 1) ROW(2 * v + 2, slot) = f.hi;
+#else
+  ROW(4 * v + 1, slot) = f.s0123;
+  ROW(4 * v + 2, slot) = f.s4567;
+  ROW(4 * v + 3, slot) = f.s89ab;
+#endif
 }
 
-// Arrivals of one row before collision.
-static Populations pull(const Block* block, const Row (*state)[ROWS], int y, int z) {
-  const int row = y + EDGE * z;
-  Populations in;
-  in.f[0] = shift_up(state[0][row], block->incoming[0][row]);
-  in.f[1] = shift_down(state[1][row], block->incoming[1][row]);
-  in.f[2] = y > 0 ? state[2][row - 1] : LOAD_ROW(z, block->incoming[2]);
-  in.f[3] = y < EDGE - 1 ? state[3][row + 1] : LOAD_ROW(z, block->incoming[3]);
-  in.f[4] = z > 0 ? state[4][row - EDGE] : LOAD_ROW(y, block->incoming[4]);
-  in.f[5] = z < EDGE - 1 ? state[5][row + EDGE] : LOAD_ROW(y, block->incoming[5]);
-  if (block->links) {
-    // Boundary: f_in = R f_out (numerics section 3). Index jump: part of each side is reflected.
-    for (int i = 0; i < 6; ++i) {
-      in.f[i] = LOAD_ROW(row, block->links + i * VOXELS) * state[i ^ 1][row] +
-                LOAD_ROW(row, block->links + (6 + i) * VOXELS) * in.f[i];
+// Summed |change| of the fluence, the fluence, phi - phi', phi'.
+typedef struct {
+  Lanes change, total, lost, after;
+} Sums;
+
+// One step. in: arrivals over the faces; wall: share of a voxel's departure that comes back. A crossing step leaves in the
+// end voxels' slots what arrives there next: own share, and `keep` (1, or 0 after the last step) of what comes in.
+__attribute__((always_inline)) static void step(global float* slots, const Block* block, const Faces* in, const Faces* wall, Faces* sent, float keep,
+                 global float* fluence, Sums* sums, const int crossing, int last) {
+  global float* down_x = slots;
+  global float* up_x = slots + VOXELS;
+  global float* down_y = slots + 2 * VOXELS;
+  global float* up_y = slots + 3 * VOXELS;
+  global float* down_z = slots + 4 * VOXELS;
+  global float* up_z = slots + 5 * VOXELS;
+  const int walled = block->walled;
+  for (int v = 0; v < VECTORS; ++v) {
+    const int z = v / PER_PLANE, j = v % PER_PLANE;
+    Six f;
+    if (crossing) {
+      const Lanes below = LANES_OF(v, up_x), above = LANES_OF(v, down_x);
+      f.xp = shift_up(below) + in->x[0][v];
+      f.xm = shift_down(above) + in->x[1][v];
+      Row ym = in->y[0][z], yp = in->y[1][z];
+      Lanes zm = in->z[0][j], zp = in->z[1][j];
+      if (walled) {
+        f.xp += wall->x[0][v] * above;
+        f.xm += wall->x[1][v] * below;
+        ym += wall->y[0][z] * ROW_OF(EDGE * z, down_y);
+        yp += wall->y[1][z] * ROW_OF(EDGE * z + EDGE - 1, up_y);
+        zm += wall->z[0][j] * LANES_OF(v, down_z);
+        zp += wall->z[1][j] * LANES_OF(v, up_z);
+      }
+      f.yp = rows_below(up_y, v, ym);
+      f.ym = rows_above(down_y, v, yp);
+      f.zp = z > 0 ? LANES_OF(v - PER_PLANE, up_z) : zm;
+      f.zm = z < EDGE - 1 ? LANES_OF(v + PER_PLANE, down_z) : zp;
+    } else {
+      f.xp = LANES_OF(v, down_x);
+      f.xm = LANES_OF(v, up_x);
+      f.yp = LANES_OF(v, down_y);
+      f.ym = LANES_OF(v, up_y);
+      f.zp = LANES_OF(v, down_z);
+      f.zm = LANES_OF(v, up_z);
+    }
+    Lanes p0 = block->p0, p1 = block->p1, q0 = (Lanes)(0.0f);
+    if (block->collision) {
+      p0 = LANES_OF(v, block->collision);
+      p1 = LANES_OF(v, block->collision + VOXELS);
+    }
+    if (block->source) q0 = LANES_OF(v, block->source);
+    const Lanes before = sum_of(f), after = (before - p0 * before) + q0;
+    f = collide(f, before, after, p1);
+    if (last) {
+      const Lanes value = fluence_of(p0, p1, q0, before, after);
+      sums->change += fabs(value - LANES_OF(v, fluence));
+      sums->total += value;
+      sums->lost += before - after;
+      sums->after += after;
+      LANES(v, fluence) = value;
+    }
+    sent->x[0][v] += f.xm;
+    sent->x[1][v] += f.xp;
+    if (j == 0) sent->y[0][z] += first_row(f.ym);
+    if (j == PER_PLANE - 1) sent->y[1][z] += last_row(f.yp);
+    if (z == 0) sent->z[0][j] += f.zm;
+    if (z == EDGE - 1) sent->z[1][j] += f.zp;
+    if (crossing) {
+      Lanes at_xm = shift_up(f.xp) + keep * in->x[0][v], at_xp = shift_down(f.xm) + keep * in->x[1][v];
+      Row at_ym = keep * in->y[0][z], at_yp = keep * in->y[1][z];
+      Lanes at_zm = keep * in->z[0][j], at_zp = keep * in->z[1][j];
+      if (walled) {
+        at_xm += wall->x[0][v] * f.xm;
+        at_xp += wall->x[1][v] * f.xp;
+        at_ym += wall->y[0][z] * first_row(f.ym);
+        at_yp += wall->y[1][z] * last_row(f.yp);
+        at_zm += wall->z[0][j] * f.zm;
+        at_zp += wall->z[1][j] * f.zp;
+      }
+      LANES(v, down_x) = at_xm;
+      LANES(v, up_x) = at_xp;
+      to_rows_below(f.ym, up_y, v);
+      to_rows_above(f.yp, down_y, v);
+      if (j == 0) ROW(EDGE * z, down_y) = at_ym;
+      if (j == PER_PLANE - 1) ROW(EDGE * z + EDGE - 1, up_y) = at_yp;
+      if (z > 0) LANES(v - PER_PLANE, up_z) = f.zm;
+      else LANES(v, down_z) = at_zm;
+      if (z < EDGE - 1) LANES(v + PER_PLANE, down_z) = f.zp;
+      else LANES(v, up_z) = at_zp;
+    } else {
+      LANES(v, down_x) = f.xm;
+      LANES(v, up_x) = f.xp;
+      LANES(v, down_y) = f.ym;
+      LANES(v, up_y) = f.yp;
+      LANES(v, down_z) = f.zm;
+      LANES(v, up_z) = f.zp;
     }
   }
-  return in;
 }
 
-static Populations collide(const Block* block, Populations in, int row, Row* phi_before, Row* phi_after) {
-  const Row p0 = LOAD_ROW(row, block->collision);
-  const Row p1 = LOAD_ROW(row, block->collision + VOXELS);
-  const Row p2 = LOAD_ROW(row, block->collision + 2 * VOXELS);
-  const Row q0 = LOAD_ROW(row, block->source);
-  const Row phi = ((in.f[0] + in.f[1]) + (in.f[2] + in.f[3])) + (in.f[4] + in.f[5]);
-  const Row phi_new = (1.0f - p0) * phi + q0;
-  Populations out;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Row even = phi_new * (1.0f / 3.0f) + (1.0f - p2) * (in.f[2 * axis] + in.f[2 * axis + 1] - phi * (1.0f / 3.0f));
-    const Row odd = (1.0f - p1) * (in.f[2 * axis] - in.f[2 * axis + 1]);
-    out.f[2 * axis] = 0.5f * (even + odd);
-    out.f[2 * axis + 1] = 0.5f * (even - odd);
+// Faces within a block where arrivals are not simply what the neighbour sent, before a step that is crossing or local:
+// face = place of the voxel x below | place of y above it << 9 | axis << 18; share = (own, other) of y, then of x.
+static void exchange(global float* slots, const global int* faces, const global float4* shares, int begin, int end, int crossing) {
+  for (int i = begin; i < end; ++i) {
+    const int face = faces[i], axis = face >> 18;
+    global float* down = slots + 2 * axis * VOXELS + ((face >> 9) & 511);
+    global float* up = slots + (2 * axis + 1) * VOXELS + (face & 511);
+    const float from_x = crossing ? *up : *down, from_y = crossing ? *down : *up;
+    const float4 k = shares[i];
+    const float at_y = k.x * from_y + k.y * from_x, at_x = k.z * from_x + k.w * from_y;
+    *up = crossing ? at_y : at_x;
+    *down = crossing ? at_x : at_y;
   }
-  *phi_before = phi;
-  *phi_after = phi_new;
-  return out;
 }
 
-// Fluence of a row (numerics section 1, last paragraph of the table).
-static Row fluence_of(const Block* block, int row, Row phi_before, Row phi_after) {
-  const Row weight = LOAD_ROW(row, block->collision + 3 * VOXELS);
-#if TURBID_COLLISION <= 1
-  return weight * phi_before;
-#elif TURBID_COLLISION == 2
-  return weight * 0.5f * (phi_before + phi_after);
+// Row ends across x, [row], as end lanes of vectors.
+static Lanes row_ends(const global float* values, int v, int upper) {
+#if EDGE == 8
+  const float a = values[2 * v], b = values[2 * v + 1], o = 0.0f;
+  return upper ? (Lanes)(o, o, o, o, o, o, o, a, o, o, o, o, o, o, o, b) : (Lanes)(a, o, o, o, o, o, o, o, b, o, o, o, o, o, o, o);
 #else
-  // psi = m - (s_a' m - q*) s / 4, m the mean of before and after; weight = 1 - s_a' s / 4.
-  const Row p0 = LOAD_ROW(row, block->collision), p1 = LOAD_ROW(row, block->collision + VOXELS);
-  const Row s = p1 / (1.0f - 0.5f * p1), absorbed = p0 / (1.0f - 0.5f * p0);
-  const Row q_star = LOAD_ROW(row, block->source) * (1.0f + 0.5f * absorbed);
-  return weight * 0.5f * (phi_before + phi_after) + 0.25f * q_star * s;
+  const float4 e = vload4(v, values);
+  const float o = 0.0f;
+  return upper ? (Lanes)(o, o, o, e.x, o, o, o, e.y, o, o, o, e.z, o, o, o, e.w)
+               : (Lanes)(e.x, o, o, o, e.y, o, o, o, e.z, o, o, o, e.w, o, o, o);
 #endif
+}
+
+static void load_faces(Faces* to, const global float* from[6]) {
+  for (int side = 0; side < 2; ++side) {
+    for (int v = 0; v < VECTORS; ++v) to->x[side][v] = row_ends(from[side], v, side);
+    for (int z = 0; z < EDGE; ++z) to->y[side][z] = ROW_OF(z, from[2 + side]);
+    for (int j = 0; j < PER_PLANE; ++j) to->z[side][j] = LANES_OF(j, from[4 + side]);
+  }
+}
+
+// After a local step the next crossing one finds arrivals over the faces in `in`; a local step finds them in the slots.
+static void add_arrivals(global float* slots, const Faces* in) {
+  for (int side = 0; side < 2; ++side) {
+    global float* slot = slots + side * VOXELS;
+    for (int v = 0; v < VECTORS; ++v) LANES(v, slot) = LANES_OF(v, slot) + in->x[side][v];
+    slot = slots + (2 + side) * VOXELS + side * (EDGE - 1) * EDGE;
+    for (int z = 0; z < EDGE; ++z) ROW(EDGE * z, slot) = ROW_OF(EDGE * z, slot) + in->y[side][z];
+    slot = slots + (4 + side) * VOXELS + side * (EDGE - 1) * ROWS;
+    for (int j = 0; j < PER_PLANE; ++j) LANES(j, slot) = LANES_OF(j, slot) + in->z[side][j];
+  }
 }
 
 // What a block sends its neighbours: the mean over the inner steps of what left through each face. With the last step's instead
 // (as in the paper) the exchange can amplify: two-relaxation-time modes of thin voxels alternate in sign from step to step and a
 // frozen interface resonates with them. The mean can't: a step conserves or loses energy, sum_t |out_t|^2 + |x_m|^2 <= m |in|^2 +
 // |x_0|^2, and |mean out|^2 <= sum_t |out_t|^2 / m, so |x|^2 + m |interfaces|^2 never grows. The steady state is the same.
-typedef struct {
-  float x[2][ROWS];
-  Row y[2][EDGE], z[2][EDGE];
-} Sent;
-
-static void add_outgoing(Sent* sent, const Row (*state)[ROWS]) {
-  for (int row = 0; row < ROWS; ++row) {
+static void send(const Faces* sent, global float* faces, float mean) {
+  for (int v = 0; v < VECTORS; ++v) {
+    const Lanes up = mean * sent->x[1][v], down = mean * sent->x[0][v];
 #if EDGE == 8
-    sent->x[0][row] += state[0][row].s7;
+    vstore2((float2)(up.s7, up.sf), v, faces);
+    vstore2((float2)(down.s0, down.s8), v, faces + ROWS);
 #else
-    sent->x[0][row] += state[0][row].s3;
+    vstore4((float4)(up.s3, up.s7, up.sb, up.sf), v, faces);
+    vstore4((float4)(down.s0, down.s4, down.s8, down.sc), v, faces + ROWS);
 #endif
-    sent->x[1][row] += state[1][row].s0;
   }
-  for (int k = 0; k < EDGE; ++k) {
-    sent->y[0][k] += state[2][EDGE - 1 + EDGE * k];
-    sent->y[1][k] += state[3][EDGE * k];
-    sent->z[0][k] += state[4][k + EDGE * (EDGE - 1)];
-    sent->z[1][k] += state[5][k];
+  for (int z = 0; z < EDGE; ++z) {
+    ROW(z, faces + 2 * ROWS) = mean * sent->y[1][z];
+    ROW(z, faces + 3 * ROWS) = mean * sent->y[0][z];
+  }
+  for (int j = 0; j < PER_PLANE; ++j) {
+    LANES(j, faces + 4 * ROWS) = mean * sent->z[1][j];
+    LANES(j, faces + 5 * ROWS) = mean * sent->z[0][j];
   }
 }
 
-// `inner` steps in every block. sums[channel][block][2]: summed |change| of the fluence since the last sweep, and its sum.
-kernel void sweep(const global float* collision, const global float* source, const global int* link_block,
-                  const global float* links, const global int* neighbours, const global float* interfaces_in,
-                  global float* interfaces_out, global float* populations, global float* fluence, global float* sums,
-                  int blocks, int link_blocks, int channels, int inner) {
+// `inner` steps in every block, the first one crossing or, where so many steps have been done, local.
+// collision[channel][block][p0, p1][voxel], used where even[channel][block].x < 0: else p0 and p1 of all its voxels.
+// source[channel][block][voxel], used where lit[channel][block]. wall_block[block]: its number among those with walls, or -1;
+// walls[channel][wall block][own, other][face][row]: shares of a voxel's departure and of what the neighbour sent that arrive.
+// first_face[block]: faces[...] and shares[channel][...] up to the next block's belong to it. interfaces[channel][block and a block
+// of zeros][population][row]. sums[channel][block][4] of the last step: Sums.
+kernel void sweep(const global float* collision, const global float2* even, const global float* source, const global int* lit,
+                  const global int* wall_block, const global float* walls, const global int* first_face, const global int* faces,
+                  const global float4* shares, const global int* neighbours, const global float* interfaces_in,
+                  global float* interfaces_out, global float* populations, global float* fluence, global float* sums, int blocks,
+                  int wall_blocks, int channels, int inner, int local_first) {
   const int block_index = get_global_id(0), channel = get_global_id(1);
   if (block_index >= blocks || channel >= channels) return;
-  const Block block = block_data(collision, source, link_block, links, interfaces_in, neighbours, blocks, link_blocks,
-                                 block_index, channel);
   const size_t index = (size_t)channel * blocks + block_index;
-  global float* stored = populations + index * 6 * VOXELS;
+  const int wall_index = wall_block[block_index];
+  Block block;
+  block.collision = even[index].x < 0.0f ? collision + index * 2 * VOXELS : 0;
+  block.p0 = (Lanes)(even[index].x);
+  block.p1 = (Lanes)(even[index].y);
+  block.source = lit[index] ? source + index * VOXELS : 0;
+  block.walled = wall_index >= 0;
+  Faces in, wall, sent;
+  const global float* from[6];
+  for (int i = 0; i < 6; ++i) {
+    // Directions are numbered +x, -x, ... and faces -x, +x, ...: population +x (0) arrives over the face -x (0).
+    const int other = neighbours[6 * block_index + i];
+    from[i] = interfaces_in + (((size_t)channel * (blocks + 1) + other) * 6 + i) * ROWS;
+  }
+  load_faces(&in, from);
+  if (block.walled) {
+    const global float* own = walls + ((size_t)channel * wall_blocks + wall_index) * 12 * ROWS;
+    for (int i = 0; i < 6; ++i) from[i] = own + (6 + i) * ROWS;
+    load_faces(&wall, from);
+    for (int side = 0; side < 2; ++side) {
+      for (int v = 0; v < VECTORS; ++v) in.x[side][v] *= wall.x[side][v];
+      for (int z = 0; z < EDGE; ++z) in.y[side][z] *= wall.y[side][z];
+      for (int j = 0; j < PER_PLANE; ++j) in.z[side][j] *= wall.z[side][j];
+    }
+    for (int i = 0; i < 6; ++i) from[i] = own + i * ROWS;
+    load_faces(&wall, from);
+  }
+  for (int side = 0; side < 2; ++side) {
+    for (int v = 0; v < VECTORS; ++v) sent.x[side][v] = (Lanes)(0.0f);
+    for (int z = 0; z < EDGE; ++z) sent.y[side][z] = (Row)(0.0f);
+    for (int j = 0; j < PER_PLANE; ++j) sent.z[side][j] = (Lanes)(0.0f);
+  }
+  global float* slots = populations + index * 6 * VOXELS;
   global float* psi = fluence + index * VOXELS;
-  Row even_steps[6][ROWS], odd_steps[6][ROWS];
-  for (int i = 0; i < 6; ++i) {
-    for (int row = 0; row < ROWS; ++row) even_steps[i][row] = LOAD_ROW(row, stored + i * VOXELS);
+  const global float4* share = shares + (size_t)channel * first_face[blocks];
+  const int begin = first_face[block_index], end = first_face[block_index + 1];
+  Sums of_last;
+  of_last.change = of_last.total = of_last.lost = of_last.after = (Lanes)(0.0f);
+  if (local_first) add_arrivals(slots, &in);
+  for (int i = 0; i < inner; ++i) {
+    const int crossing = (i & 1) == local_first, last = i == inner - 1;
+    exchange(slots, faces, share, begin, end, crossing);
+    if (crossing) step(slots, &block, &in, &wall, &sent, last ? 0.0f : 1.0f, psi, &of_last, 1, last);
+    else step(slots, &block, &in, &wall, &sent, 1.0f, psi, &of_last, 0, last);
   }
-  Sent sent;
-  for (int row = 0; row < ROWS; ++row) sent.x[0][row] = sent.x[1][row] = 0.0f;
-  for (int k = 0; k < EDGE; ++k) sent.y[0][k] = sent.y[1][k] = sent.z[0][k] = sent.z[1][k] = (Row)(0.0f);
-  float change = 0.0f, total = 0.0f;
-  for (int step = 0; step < inner; ++step) {
-    Row(*from)[ROWS] = (step & 1) ? odd_steps : even_steps;
-    Row(*to)[ROWS] = (step & 1) ? even_steps : odd_steps;
-    const bool last = step == inner - 1;
-    for (int row = 0; row < ROWS; ++row) {
-      Row before, after;
-      const Populations out = collide(&block, pull(&block, (const Row(*)[ROWS])from, row % EDGE, row / EDGE), row, &before, &after);
-      for (int i = 0; i < 6; ++i) to[i][row] = out.f[i];
-      if (last) {
-        const Row value = fluence_of(&block, row, before, after);
-        change += row_sum(fabs(value - LOAD_ROW(row, psi)));
-        total += row_sum(value);
-        STORE_ROW(value, row, psi);
-      }
-    }
-    add_outgoing(&sent, (const Row(*)[ROWS])to);
-  }
-  Row(*result)[ROWS] = (inner & 1) ? odd_steps : even_steps;
-  global float* faces = interfaces_out + ((size_t)channel * (blocks + 1) + block_index) * 6 * ROWS;
-  const float mean = 1.0f / (float)inner;
-  for (int row = 0; row < ROWS; ++row) {
-    for (int i = 0; i < 6; ++i) STORE_ROW(result[i][row], row, stored + i * VOXELS);
-    faces[0 * ROWS + row] = mean * sent.x[0][row];
-    faces[1 * ROWS + row] = mean * sent.x[1][row];
-  }
-  for (int k = 0; k < EDGE; ++k) {
-    STORE_ROW(mean * sent.y[0][k], k, faces + 2 * ROWS);
-    STORE_ROW(mean * sent.y[1][k], k, faces + 3 * ROWS);
-    STORE_ROW(mean * sent.z[0][k], k, faces + 4 * ROWS);
-    STORE_ROW(mean * sent.z[1][k], k, faces + 5 * ROWS);
-  }
-  sums[2 * index] = change;
-  sums[2 * index + 1] = total;
+  send(&sent, interfaces_out + ((size_t)channel * (blocks + 1) + block_index) * 6 * ROWS, 1.0f / (float)inner);
+  vstore4((float4)(sum16(of_last.change), sum16(of_last.total), sum16(of_last.lost), sum16(of_last.after)), index, sums);
 }
 
-// Energy of one more step, per block: sums[channel][block][8] = absorbed, escaped through boundary faces towards -x, +x, -y,
-// +y, -z, +z, and added to what is stored. sum q = absorbed + escaped + added holds in every step (numerics, energy identity);
-// the last vanishes in the steady state.
-kernel void balance(const global float* collision, const global float* source, const global float* injected,
-                    const global int* link_block, const global float* links, const global int* neighbours,
-                    const global float* interfaces_in, const global float* populations, global float* sums, int blocks,
-                    int link_blocks, int channels) {
-  const int block_index = get_global_id(0), channel = get_global_id(1);
-  if (block_index >= blocks || channel >= channels) return;
-  const Block block = block_data(collision, source, link_block, links, interfaces_in, neighbours, blocks, link_blocks,
-                                 block_index, channel);
-  const size_t index = (size_t)channel * blocks + block_index;
-  const global float* stored = populations + index * 6 * VOXELS;
-  Row state[6][ROWS];
-  for (int i = 0; i < 6; ++i) {
-    for (int row = 0; row < ROWS; ++row) state[i][row] = LOAD_ROW(row, stored + i * VOXELS);
-  }
-  Row absorbed = (Row)(0.0f), stored_more = (Row)(0.0f);
+// What is under way after a local step, per block: sums[channel][block][7] = all departures, and those that escape through boundary
+// faces towards -x, +x, -y, +y, -z, +z. open_towards[face]: 0..5, or -1 for faces between two active voxels.
+kernel void departures(const global int* wall_block, const global float* walls, const global int* first_face,
+                       const global int* faces, const global int* open_towards, const global float4* shares,
+                       const global float* populations, global float* sums, int blocks, int wall_blocks, int channels) {
+  const int block = get_global_id(0), channel = get_global_id(1);
+  if (block >= blocks || channel >= channels) return;
+  const size_t index = (size_t)channel * blocks + block;
+  const global float* slots = populations + index * 6 * VOXELS;
+  Lanes total = (Lanes)(0.0f);
+  for (int v = 0; v < 6 * VECTORS; ++v) total += LANES_OF(v, slots);
   float escaped[6] = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
-  for (int row = 0; row < ROWS; ++row) {
-    Row before, after;
-    collide(&block, pull(&block, (const Row(*)[ROWS])state, row % EDGE, row / EDGE), row, &before, &after);
-    absorbed += before - after + LOAD_ROW(row, injected + index * VOXELS);
-    for (int i = 0; i < 6; ++i) after -= state[i][row];
-    stored_more += after;
-    if (!block.links) continue;
-    for (int i = 0; i < 6; ++i) {
-      // Population i leaves through the face on its own side; what comes back there is population i ^ 1.
-      const Row own = LOAD_ROW(row, block.links + (i ^ 1) * VOXELS);
-      const Row other = LOAD_ROW(row, block.links + (6 + (i ^ 1)) * VOXELS);
-      const Row leaves = other == 0.0f ? (1.0f - own) * state[i][row] : (Row)(0.0f);
-      escaped[i ^ 1] += row_sum(leaves);
+  if (wall_block[block] >= 0) {
+    const global float* own = walls + ((size_t)channel * wall_blocks + wall_block[block]) * 12 * ROWS;
+    for (int i = 0; i < 6 * ROWS; ++i) {
+      const int face = i / ROWS, axis = face / 2, row = i % ROWS, layer = face & 1 ? EDGE - 1 : 0;
+      const int a = row % EDGE, b = row / EDGE;
+      const int place = axis == 0 ? layer + EDGE * row : axis == 1 ? a + EDGE * (layer + EDGE * b) : row + ROWS * layer;
+      if (own[6 * ROWS + i] == 0.0f) escaped[face] += (1.0f - own[i]) * slots[face * VOXELS + place];
     }
   }
-  sums[8 * index] = row_sum(absorbed);
-  for (int face = 0; face < 6; ++face) sums[8 * index + 1 + face] = escaped[face];
-  sums[8 * index + 7] = row_sum(stored_more);
+  for (int i = first_face[block]; i < first_face[block + 1]; ++i) {
+    if (open_towards[i] < 0) continue;
+    const int face = faces[i], axis = face >> 18, upper = open_towards[i] & 1;
+    const float4 k = shares[(size_t)channel * first_face[blocks] + i];
+    const float leaves = upper ? (1.0f - k.z) * slots[(2 * axis + 1) * VOXELS + (face & 511)]
+                               : (1.0f - k.x) * slots[2 * axis * VOXELS + ((face >> 9) & 511)];
+    escaped[open_towards[i]] += leaves;
+  }
+  sums[7 * index] = sum16(total);
+  for (int face = 0; face < 6; ++face) sums[7 * index + 1 + face] = escaped[face];
 }

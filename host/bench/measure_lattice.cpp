@@ -8,6 +8,7 @@
 
 #include "host/bench/figures.h"
 #include "host/bench/hard_media.h"
+#include "host/bench/measure_blocks.h"
 #include "host/profile/ceilings.h"
 #include "host/profile/spread.h"
 #include "host/transport/lattice_scheme.h"
@@ -35,7 +36,7 @@ double relative_l2(const std::vector<float>& got, const std::vector<float>& exac
 
 /// 160 bytes per voxel and step of three colours (performance notes): populations read and written, and the source.
 Goal single_step(cl::Session& session, int voxels, int repeats) {
-  constexpr int kSteps = 16, kNominalBytes = 160;
+  constexpr int kSteps = 32, kNominalBytes = 160;
   const DiffusionMedium medium = hard_medium(HardMedium::homogeneous, voxels, 1, 0.9999, 3);
   const auto lattice = make_lattice(session, medium, global_lattice());
   lattice->set_source(beam_source(medium));
@@ -143,7 +144,7 @@ Goal iterations(cl::Session& session, int largest) {
 }  // namespace
 
 std::vector<Goal> measure_lattice(cl::Session& session, int voxels, int solve_voxels, int repeats) {
-  return {single_step(session, voxels, repeats), plain_steps_against_solve(session, solve_voxels, repeats),
+  return {single_step(session, voxels, repeats), blocked_steps(session, voxels, repeats), plain_steps_against_solve(session, solve_voxels, repeats),
           iterations(session, solve_voxels)};
 }
 

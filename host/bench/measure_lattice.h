@@ -9,7 +9,7 @@
 
 namespace turbid {
 
-/// Single steps on `voxels`^3 (a multiple of 8), plain steps against the solve on `solve_voxels`^3, iterations on the media of
+/// Single steps and blocks on `voxels`^3 (a multiple of 8), plain steps against the solve on `solve_voxels`^3, iterations on the media of
 /// hard_media.h at 32^3 and `solve_voxels`^3; medians of `repeats`.
 std::vector<Goal> measure_lattice(cl::Session&, int voxels = 128, int solve_voxels = 64, int repeats = 7);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The counts. Operations are those of the formulas as written in the kernel files: additions, multiplications, divisions
-// and roots one each.
+// The counts. Operations are those of the formulas as written in the kernel files: additions, multiplications,
+// divisions and roots one each.
 #include "host/profile/kernel_work.h"
 
 #include <algorithm>
@@ -11,9 +11,9 @@ namespace {
 /// A kernel that does the same to every element of a field.
 struct FieldKernel {
   const char* name;
-  const char* field;            ///< argument whose floats are the elements
-  double operations;            ///< per element, and per ...
-  const char* times;            ///< ... unit of this integer argument; null: once
+  const char* field;                    ///< argument whose floats are the elements
+  double operations;                    ///< per element, and per ...
+  const char* times;                    ///< ... unit of this integer argument; null: once
   std::vector<const char*> in_and_out;  ///< arguments that are both read and written
   const char* how;
 };
@@ -21,14 +21,48 @@ struct FieldKernel {
 // A x of one voxel: six differences, products and sums, the diagonal's product: 20.
 const std::vector<FieldKernel>& field_kernels() {
   static const std::vector<FieldKernel> table{
-      {"sweep", "source", 50, "inner", {"populations", "fluence"},
+      {"sweep",
+       "source",
+       50,
+       "inner",
+       {"populations", "fluence"},
        "per voxel, colour and inner step: 5 sums of populations, 3 for phi', 3 x 14 for even and odd parts"},
-      {"step_in_place", "source", 45, nullptr, {"slots"}, "per place: 5 sums of populations, 2 for phi', 3 x 12 for even and odd parts"},
+      {"step_local",
+       "source",
+       38,
+       nullptr,
+       {"slots"},
+       "per place: 5 sums of populations, 3 for phi', 3 for the base, 3 x 9 for even and odd parts"},
+      {"step_crossing",
+       "source",
+       38,
+       nullptr,
+       {"slots"},
+       "per place: 5 sums of populations, 3 for phi', 3 for the base, 3 x 9 for even and odd parts"},
+      {"measure_local",
+       "source",
+       58,
+       nullptr,
+       {"slots", "fluence"},
+       "per place: 5 sums of populations, 3 for phi', 3 for the base, 3 x 9 for even and odd parts; 20 for fluence and "
+       "sums"},
+      {"measure_crossing",
+       "source",
+       58,
+       nullptr,
+       {"slots", "fluence"},
+       "per place: 5 sums of populations, 3 for phi', 3 for the base, 3 x 9 for even and odd parts; 20 for fluence and "
+       "sums"},
       {"exchange", "lost", 6, nullptr, {}, "per face and colour: two weighted sums of two"},
       {"balance", "source", 64, nullptr, {}, "one lattice step, and 14 for sums of absorbed and escaped power"},
       {"smooth_down", "b", 13, "sweeps", {}, "per voxel, colour and sweep: six products and sums, the scaling"},
       {"smooth_up", "b", 13, "sweeps", {}, "per voxel, colour and sweep: six products and sums, the scaling"},
-      {"coarse_cycle", "b", 48, nullptr, {"b", "x", "y"}, "per voxel: four sweeps of 13 less the halves that start from zero"},
+      {"coarse_cycle",
+       "b",
+       48,
+       nullptr,
+       {"b", "x", "y"},
+       "per voxel: four sweeps of 13 less the halves that start from zero"},
       {"restrict_residual", "b", 22, nullptr, {}, "A x (20), its difference from b, the sum into the coarse voxel"},
       {"apply", "x", 22, nullptr, {}, "A x (20) and its product with x, summed"},
       {"advance_solution", "x", 5, nullptr, {"x", "r"}, "two scaled additions, one sum"},
@@ -48,7 +82,7 @@ KernelWork per_step(const SceneFeatures& f) {
     step.operations += times * 7 * width * 3;
   };
   if (f.heterogeneous) interpolate(f.channels == 3 ? 8 : 2, 1);
-  if (f.graded_index) interpolate(4, 2);  // both kicks
+  if (f.graded_index) interpolate(4, 2);                                 // both kicks
   if (f.absorption || f.scattering) step.operations += 12 * f.channels;  // extinction: exp counted as 8
   return step;
 }
@@ -75,7 +109,8 @@ KernelWork view_work(const RayWork& rays, const SceneFeatures& f) {
 
 }  // namespace
 
-KernelWork work_of(const std::vector<const cl::Command*>& launches, const RayWork& rays, const SceneFeatures& features) {
+KernelWork work_of(const std::vector<const cl::Command*>& launches, const RayWork& rays,
+                   const SceneFeatures& features) {
   if (launches.empty()) return {};
   const std::string& name = launches[0]->name;
   if (name == "march") return march_work(rays, features);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the lattice as one whole with single steps in place (kernels/global_lattice.cl): what blocks are compared with (Bernabei et
-// al., Fig. 9), and the lattice that needs the least memory.
+// Runs the lattice as one whole with single steps in place (kernels/global_lattice.cl): what blocks are compared with
+// (Bernabei et al., Fig. 9), and the lattice that needs the least memory.
 #pragma once
 #include <vector>
 
@@ -29,24 +29,28 @@ class GlobalLattice : public LatticeScheme {
 
  private:
   using F = cl::Buffer<float>;
+  using I = cl::Buffer<std::int32_t>;
+  using F2 = cl::Buffer<std::array<float, 2>>;
+  using I2 = cl::Buffer<std::array<std::int32_t, 2>>;
+  using I4 = cl::Buffer<std::array<std::int32_t, 4>>;
+  using Step = cl::Kernel<F, F, F2, F, I, I4, I4, F2, I2, F, int, int, int, int, int>;
+  using MeasuredStep = cl::Kernel<F, F, F2, F, I, I4, I4, F2, I2, F, int, int, int, int, int, F, F>;
   void enqueue_step(bool measure);
 
   cl::Session& session_;
   GlobalRows rows_;
-  int channels_ = 3, row_count_ = 0, face_count_ = 0;
+  int channels_ = 3, row_count_ = 0, block_count_ = 0, face_count_ = 0;
   glm::dvec3 emitted_{0};  ///< sum of the source [W]
   cl::Program program_;
-  cl::Kernel<F, F, F, cl::Buffer<std::array<std::int32_t, 4>>, cl::Buffer<std::array<std::int32_t, 2>>, F, F, int, int, int, int,
-             int>
-      step_;
-  cl::Kernel<F, cl::Buffer<std::array<std::int32_t, 4>>, cl::Buffer<std::int32_t>, cl::Buffer<std::array<float, 4>>, F, int, int,
-             int, int, int>
-      exchange_;
-  F slots_, collision_, source_, fluence_, sums_, lost_;
-  cl::Buffer<std::array<std::int32_t, 4>> rows_buffer_, faces_buffer_;
-  cl::Buffer<std::array<std::int32_t, 2>> near_buffer_;
-  cl::Buffer<std::array<float, 4>> links_buffer_;
-  cl::Buffer<std::int32_t> axes_buffer_;
+  Step steps_[2];  ///< local, crossing
+  MeasuredStep measured_[2];
+  cl::Kernel<F, I4, cl::Buffer<std::array<float, 4>>, F, int, int, int, int, int> exchange_;
+  F slots_, collision_, source_, walls_, fluence_, sums_, lost_;
+  F2 even_, end_walls_;
+  I lit_;
+  I4 rows_buffer_, ends_, faces_;
+  I2 near_;
+  cl::Buffer<std::array<float, 4>> links_;
 };
 
 }  // namespace turbid

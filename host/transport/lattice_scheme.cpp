@@ -34,7 +34,8 @@ double LatticeScheme::relax(const std::function<void(double)>& progress) {
                        ", stable to 2 with collision = \"paper\"; raise the resolution or use collision = \"trt\"");
     }
     // rho per sweep from changes that lie sweeps_per_test() sweeps apart.
-    const double rho = previous > 0 ? std::min(std::pow(change / previous, 1.0 / sweeps_per_test()), 0.999999) : 0.999999;
+    const double rho =
+        previous > 0 ? std::min(std::pow(change / previous, 1.0 / sweeps_per_test()), 0.999999) : 0.999999;
     previous = change;
     estimate = change * rho / (1.0 - rho);
     if (progress) progress(std::clamp(std::log(estimate) / std::log(settings_.tolerance), 0.0, 1.0));

@@ -17,7 +17,7 @@ namespace turbid {
 /// Energy of one lattice step [W per channel].
 struct LatticeEnergy {
   glm::dvec3 absorbed{0};
-  glm::dvec3 stored{0};   ///< what the step added to the populations: 0 in the steady state
+  glm::dvec3 stored{0};  ///< what the step added to the populations: 0 in the steady state
   std::array<glm::dvec3, 6> escaped{};
 };
 
@@ -38,7 +38,7 @@ class LatticeScheme {
   bool at_rest() const { return sweeps_ == 0; }
 
   struct Change {
-    double relative = 0;   ///< summed |change| of the last sweep / summed fluence, worst channel
+    double relative = 0;  ///< summed |change| of the last sweep / summed fluence, worst channel
   };
   /// Waits for the sweeps and reads the last one's change.
   virtual Change read_change() = 0;
@@ -48,8 +48,8 @@ class LatticeScheme {
   /// Device memory held [bytes].
   virtual std::size_t device_bytes() const = 0;
 
-  /// Sweeps until the estimated error, change * rho / (1 - rho) with rho the ratio of successive changes (numerics section 5),
-  /// is below the tolerance. Returns that estimate. `progress(fraction)` may throw to stop.
+  /// Sweeps until the estimated error, change * rho / (1 - rho) with rho the ratio of successive changes (numerics
+  /// section 5), is below the tolerance. Returns that estimate. `progress(fraction)` may throw to stop.
   double relax(const std::function<void(double)>& progress = {});
 
  protected:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Composes the two queues. The number of sweeps per batch is fixed, so the result does not depend on which queue is faster.
+// Composes the two queues. The number of sweeps per batch is fixed, so the result does not depend on which queue is
+// faster.
 #include "host/transport/lattice_solver.h"
 
 #include <algorithm>
@@ -25,8 +26,8 @@ void LatticeSolver::march_all(March& march) {
     march.finish_batch([&] { context_.progress.update(march_progress(march)); });
     context_.session.lattice_queue().finish();
     if (march.rays_left() > 0) {
-      const LightSource so_far =
-          gather_source(march.read_deposit(), march.read_flux(), march.watts_per_unit(), device_medium(), diffusion_medium());
+      const LightSource so_far = gather_source(march.read_deposit(), march.read_flux(), march.watts_per_unit(),
+                                               device_medium(), diffusion_medium());
       lattice_->set_source(so_far.power);
     }
     context_.progress.update(march_progress(march));
@@ -48,7 +49,8 @@ DiffuseLight LatticeSolver::diffuse(const LightSource& source) {
   for (const BoundaryFace& face : medium.boundary) {
     if (!face.opaque) continue;
     for (int c = 0; c < medium.channels; ++c) {
-      const double power = medium.boundary_conductance(face, c) * light.fluence[medium.index(c, face.block, face.voxel)];
+      const double power =
+          medium.boundary_conductance(face, c) * light.fluence[medium.index(c, face.block, face.voxel)];
       light.escaped[face.face][c] -= power;
       light.absorbed_opaque[c] += power;
     }

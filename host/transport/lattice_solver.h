@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paper's scheme: batches of rays march on one queue while the lattice relaxes the earlier batches' deposits on another.
+// The paper's scheme: batches of rays march on one queue while the lattice relaxes the earlier batches' deposits on
+// another.
 #pragma once
 #include "host/transport/lattice_scheme.h"
 #include "host/transport/marching_solver.h"

@@ -24,8 +24,8 @@ kernel void apply(const global float* conductance, const global float* loss, con
   float8 sum = (float8)(0.0f);
   for (int v = 0; v < 64; ++v) {
     const float8 value = apply_vector(&a, &from, v);
-    vstore8(value, v, result);
-    sum += value * vload8(v, from.here);
+    PUT_EIGHT(v, result) = value;
+    sum += value * EIGHT(v, from.here);
   }
   sums[(size_t)channel * blocks + block] = sum8(sum);
 }
@@ -42,8 +42,8 @@ kernel void true_residual(const global float* conductance, const global float* l
   const size_t own = offset + (size_t)block * TURBID_BLOCK_VOXELS;
   float8 sum = (float8)(0.0f);
   for (int v = 0; v < 64; ++v) {
-    const float8 value = vload8(v, b + own) - apply_vector(&a, &from, v);
-    vstore8(value, v, r + own);
+    const float8 value = EIGHT(v, b + own) - apply_vector(&a, &from, v);
+    PUT_EIGHT(v, r + own) = value;
     sum += value;
   }
   sums[(size_t)channel * blocks + block] = sum8(sum);
@@ -124,9 +124,9 @@ kernel void advance_solution(const global float* p, const global float* ap, glob
   const float step = alpha.value[channel];
   float8 sum = (float8)(0.0f);
   for (int v = 0; v < 64; ++v) {
-    vstore8(vload8(v, x + offset) + step * vload8(v, p + offset), v, x + offset);
-    const float8 residual = vload8(v, r + offset) - step * vload8(v, ap + offset);
-    vstore8(residual, v, r + offset);
+    PUT_EIGHT(v, x + offset) = EIGHT(v, x + offset) + step * EIGHT(v, p + offset);
+    const float8 residual = EIGHT(v, r + offset) - step * EIGHT(v, ap + offset);
+    PUT_EIGHT(v, r + offset) = residual;
     sum += residual;
   }
   sums[(size_t)channel * blocks + block] = sum8(sum);
@@ -138,7 +138,7 @@ kernel void dot_product(const global float* u, const global float* v, global flo
   if (block >= blocks || channel >= channels) return;
   const size_t offset = ((size_t)channel * (blocks + 1) + block) * TURBID_BLOCK_VOXELS;
   float8 sum = (float8)(0.0f);
-  for (int i = 0; i < 64; ++i) sum += vload8(i, u + offset) * vload8(i, v + offset);
+  for (int i = 0; i < 64; ++i) sum += EIGHT(i, u + offset) * EIGHT(i, v + offset);
   sums[(size_t)channel * blocks + block] = sum8(sum);
 }
 
@@ -148,7 +148,7 @@ kernel void next_direction(const global float* z, global float* p, ChannelScalar
   if (block >= blocks || channel >= channels) return;
   const size_t offset = ((size_t)channel * (blocks + 1) + block) * TURBID_BLOCK_VOXELS;
   for (int v = 0; v < 64; ++v) {
-    vstore8(vload8(v, z + offset) + beta.value[channel] * vload8(v, p + offset), v, p + offset);
+    PUT_EIGHT(v, p + offset) = EIGHT(v, z + offset) + beta.value[channel] * EIGHT(v, p + offset);
   }
 }
 
@@ -157,5 +157,5 @@ kernel void scale(global float* x, ChannelScalars factor, int blocks, int channe
   const int block = get_global_id(0), channel = get_global_id(1);
   if (block >= blocks || channel >= channels) return;
   const size_t offset = ((size_t)channel * (blocks + 1) + block) * TURBID_BLOCK_VOXELS;
-  for (int v = 0; v < 64; ++v) vstore8(factor.value[channel] * vload8(v, x + offset), v, x + offset);
+  for (int v = 0; v < 64; ++v) PUT_EIGHT(v, x + offset) = factor.value[channel] * EIGHT(v, x + offset);
 }

@@ -7,6 +7,10 @@
 #ifndef TURBID_LIB_PACKED_BLOCK_H
 #define TURBID_LIB_PACKED_BLOCK_H
 
+// Vector v of a field: blocks, and so vectors, are aligned. PoCL writes vstore8 in parts.
+#define EIGHT(v, field) (((const global float8*)(field))[v])
+#define PUT_EIGHT(v, field) (((global float8*)(field))[v])
+
 typedef struct {
   const global float* t[3];  // conductances of this channel, all blocks
   const global float* loss;  // d
@@ -64,12 +68,12 @@ static FacesBelow faces_below(const Operator* a, int v) {
   const int k = (v >> 1) & 3, z = v >> 3, first_even = !((v ^ z) & 1), o = v ^ 1;
   const size_t own = (size_t)a->block * TURBID_BLOCK_VOXELS;
   FacesBelow f;
-  f.x = x_below(vload8(o, a->t[0] + own),
+  f.x = x_below(EIGHT(o, a->t[0] + own),
                 a->t[0][(size_t)a->neighbours[0] * TURBID_BLOCK_VOXELS + 8 * o + lane_below(first_even)], first_even);
   const global float* below = k > 0 ? a->t[1] + own + 8 * (o - 2)
                                     : a->t[1] + (size_t)a->neighbours[2] * TURBID_BLOCK_VOXELS + 8 * (o + 6);
   f.y = (float8)(vload4(1, below), vload4(0, a->t[1] + own + 8 * o));
-  f.z = z > 0 ? vload8(o - 8, a->t[2] + own) : vload8(o + 56, a->t[2] + (size_t)a->neighbours[4] * TURBID_BLOCK_VOXELS);
+  f.z = z > 0 ? EIGHT(o - 8, a->t[2] + own) : EIGHT(o + 56, a->t[2] + (size_t)a->neighbours[4] * TURBID_BLOCK_VOXELS);
   return f;
 }
 
@@ -78,16 +82,16 @@ static float8 apply_vector(const Operator* a, const Around* x, int v) {
   const int k = (v >> 1) & 3, z = v >> 3, first_even = !((v ^ z) & 1), o = v ^ 1;
   const size_t own = (size_t)a->block * TURBID_BLOCK_VOXELS;
   const FacesBelow f = faces_below(a, v);
-  const float8 here = vload8(v, x->here), other = vload8(o, x->here);
+  const float8 here = EIGHT(v, x->here), other = EIGHT(o, x->here);
   const float8 xm = x_below(other, x->next[0][8 * o + lane_below(first_even)], first_even);
   const float8 xp = x_above(other, x->next[1][8 * o + lane_above(first_even)], first_even);
   const float8 ym = (float8)(vload4(1, k > 0 ? x->here + 8 * (o - 2) : x->next[2] + 8 * (o + 6)), other.lo);
   const float8 yp = (float8)(other.hi, vload4(0, k < 3 ? x->here + 8 * (o + 2) : x->next[3] + 8 * (o - 6)));
-  const float8 zm = vload8(0, z > 0 ? x->here + 8 * (o - 8) : x->next[4] + 8 * (o + 56));
-  const float8 zp = vload8(0, z < 7 ? x->here + 8 * (o + 8) : x->next[5] + 8 * (o - 56));
-  return f.x * (here - xm) + vload8(v, a->t[0] + own) * (here - xp) + f.y * (here - ym) +
-         vload8(v, a->t[1] + own) * (here - yp) + f.z * (here - zm) + vload8(v, a->t[2] + own) * (here - zp) +
-         vload8(v, a->loss + own) * here;
+  const float8 zm = EIGHT(0, z > 0 ? x->here + 8 * (o - 8) : x->next[4] + 8 * (o + 56));
+  const float8 zp = EIGHT(0, z < 7 ? x->here + 8 * (o + 8) : x->next[5] + 8 * (o - 56));
+  return f.x * (here - xm) + EIGHT(v, a->t[0] + own) * (here - xp) + f.y * (here - ym) +
+         EIGHT(v, a->t[1] + own) * (here - yp) + f.z * (here - zm) + EIGHT(v, a->t[2] + own) * (here - zp) +
+         EIGHT(v, a->loss + own) * here;
 }
 
 // What red-black sweeps inside one block need. Values and conductances beyond the block count as zero: `rhs` holds what the
@@ -110,11 +114,11 @@ static void one_colour(const Operator* a, Relaxed* r, int colour) {
       const float8 other = *x;
       float8 sum = r->rhs[v];
       sum += r->below_x[v] * x_below(other, 0.0f, first_even);
-      sum += vload8(v, t0) * x_above(other, 0.0f, first_even);
+      sum += EIGHT(v, t0) * x_above(other, 0.0f, first_even);
       sum += r->below_y[v] * (float8)(k > 0 ? x[-2].hi : (float4)(0.0f), other.lo);
-      sum += vload8(v, t1) * (float8)(other.hi, k < 3 ? x[2].lo : (float4)(0.0f));
+      sum += EIGHT(v, t1) * (float8)(other.hi, k < 3 ? x[2].lo : (float4)(0.0f));
       sum += r->below_z[v] * x[-8];
-      sum += vload8(v, t2) * x[8];
+      sum += EIGHT(v, t2) * x[8];
       r->x[16 + v] = sum * r->inverse[v];
     }
   }
@@ -130,8 +134,8 @@ static void load_operator(const Operator* a, Relaxed* r) {
   const size_t own = (size_t)a->block * TURBID_BLOCK_VOXELS;
   for (int v = 0; v < 64; ++v) {
     const FacesBelow f = faces_below(a, v);
-    const float8 diagonal = f.x + f.y + f.z + vload8(v, a->t[0] + own) + vload8(v, a->t[1] + own) + vload8(v, a->t[2] + own) +
-                            vload8(v, a->loss + own);
+    const float8 diagonal = f.x + f.y + f.z + EIGHT(v, a->t[0] + own) + EIGHT(v, a->t[1] + own) + EIGHT(v, a->t[2] + own) +
+                            EIGHT(v, a->loss + own);
     r->inverse[v] = diagonal > 0.0f ? 1.0f / diagonal : (float8)(0.0f);
     r->below_x[v] = f.x;
     r->below_y[v] = f.y;
@@ -143,11 +147,11 @@ static void smooth_from_zero(const Operator* a, const global float* b, global fl
   Relaxed r;
   load_operator(a, &r);
   for (int v = 0; v < 64; ++v) {
-    r.rhs[v] = vload8(v, b);
+    r.rhs[v] = EIGHT(v, b);
     r.x[16 + v] = (float8)(0.0f);
   }
   sweep_block(a, &r, sweeps, 0);
-  for (int v = 0; v < 64; ++v) vstore8(r.x[16 + v], v, x);
+  for (int v = 0; v < 64; ++v) PUT_EIGHT(v, x) = r.x[16 + v];
 }
 
 // The coarse values of rows 2k and 2k + 1 of plane z: lane j is the parent of x = 2j and 2j + 1. `octant` of the coarse block.
@@ -178,8 +182,8 @@ static float smooth_corrected(const Operator* a, const global float* b, const gl
     const float west = coarse_row(above_next[0], octant_next[0], k, z).w, east = coarse_row(above_next[1], octant_next[1], k, z).x;
     for (int colour = 0; colour < 2; ++colour) {
       const int v = 2 * row + colour, o = v ^ 1, first_even = !((v ^ z) & 1);
-      r.x[16 + v] = vload8(v, from.here) + (float8)(c, c);
-      float8 rhs = vload8(v, b);
+      r.x[16 + v] = EIGHT(v, from.here) + (float8)(c, c);
+      float8 rhs = EIGHT(v, b);
       const float xm = from.next[0][8 * o + lane_below(first_even)] + west;
       const float xp = from.next[1][8 * o + lane_above(first_even)] + east;
       if (first_even) {
@@ -198,11 +202,11 @@ static float smooth_corrected(const Operator* a, const global float* b, const gl
       }
       if (z == 0) {
         const float4 d = coarse_row(above_next[4], octant_next[4], k, 7);
-        rhs += r.below_z[v] * (vload8(o + 56, from.next[4]) + (float8)(d, d));
+        rhs += r.below_z[v] * (EIGHT(o + 56, from.next[4]) + (float8)(d, d));
       }
       if (z == 7) {
         const float4 d = coarse_row(above_next[5], octant_next[5], k, 0);
-        rhs += vload8(v, a->t[2] + own) * (vload8(o - 56, from.next[5]) + (float8)(d, d));
+        rhs += EIGHT(v, a->t[2] + own) * (EIGHT(o - 56, from.next[5]) + (float8)(d, d));
       }
       r.rhs[v] = rhs;
     }
@@ -210,8 +214,8 @@ static float smooth_corrected(const Operator* a, const global float* b, const gl
   sweep_block(a, &r, sweeps, 1);
   float8 sum = (float8)(0.0f);
   for (int v = 0; v < 64; ++v) {
-    vstore8(r.x[16 + v], v, y);
-    sum += r.x[16 + v] * vload8(v, b);
+    PUT_EIGHT(v, y) = r.x[16 + v];
+    sum += r.x[16 + v] * EIGHT(v, b);
   }
   return sum8(sum);
 }
@@ -224,7 +228,7 @@ static void restrict_block(const Operator* a, const global float* b, const globa
       float8 sum = (float8)(0.0f);
       for (int i = 0; i < 4; ++i) {
         const int v = 8 * (z + (i >> 1)) + 2 * k + (i & 1);
-        sum += vload8(v, b) - apply_vector(a, &from, v);
+        sum += EIGHT(v, b) - apply_vector(a, &from, v);
       }
       const float4 value = sum.lo + sum.hi;
       const int y = 4 * ((octant >> 1) & 1) + k, zz = 4 * (octant >> 2) + (z >> 1);

@@ -97,7 +97,7 @@ static void begin(Path* path, const Medium* medium, const Surroundings* around, 
                   const global ViewSample* sample, int index, global float* radiance) {
   const float3 start = vload3(0, sample->position);
   const float3 direction = vload3(0, sample->direction);
-  const float eta_observer = medium->regions[0].eta;
+  const float eta_ambient = medium->regions[0].eta;
   path->index = index;
   path->surfaces = (float3)(0.0f);
   path->gathered = colour_of(0.0f, 0.0f, 0.0f);
@@ -117,13 +117,13 @@ static void begin(Path* path, const Medium* medium, const Surroundings* around, 
   first->ray.x = start;
   first->ray.region = sample->region;
   first->ray.grace = 1.5f;
-  first->weight = colour_of(1.0f, 1.0f, 1.0f) * (eta_observer * eta_observer);
+  first->weight = colour_of(1.0f, 1.0f, 1.0f) * (p->eta_observer * p->eta_observer);
   const float eta = eta_at(medium, sample->region, locate(start));
   first->ray.v = direction * eta;
-  if (sample->entering && !index_matched(medium, 0, sample->region, eta_observer, eta)) {
+  if (sample->entering && !index_matched(medium, 0, sample->region, eta_ambient, eta)) {
     first->ray.region = 0;
-    first->ray.v = direction * eta_observer;
-    split(path, vload3(0, sample->normal), eta_observer, eta, sample->region, start, 1.5f, p->min_weight, STACK);
+    first->ray.v = direction * eta_ambient;
+    split(path, vload3(0, sample->normal), eta_ambient, eta, sample->region, start, 1.5f, p->min_weight, STACK);
   }
 }
 
@@ -133,9 +133,8 @@ static bool meet_surface(Path* path, const Medium* medium, const Surroundings* a
   Branch* branch = &path->now;
   const int next_region = step->next_region;
   if (medium->regions[next_region].opaque) {
-    const float eta_observer = medium->regions[0].eta;
     const float3 normal = surface_normal(medium, step->surface, step->beyond);
-    path->surfaces += colour_rgb(branch->weight) / (eta_observer * eta_observer) *
+    path->surfaces += colour_rgb(branch->weight) / (p->eta_observer * p->eta_observer) *
                       opaque_radiance(medium, around, p, next_region, branch->ray.x, normal);
     return false;
   }
@@ -159,13 +158,12 @@ static bool step_with_care(Path* path, const Medium* medium, const Surroundings*
   Branch* branch = &path->now;
   const int region = branch->ray.region;
   const float3 from = branch->ray.x;
-  const float eta_observer = medium->regions[0].eta;
   const Step step = advance(medium, &branch->ray, p->step, path->place.room);
   const float3 heading = (branch->ray.x - from) / fmax(step.length, 1e-9f);
   if (region == 0 && p->ground) {
     const float t = distance_to_ground(p, from, heading);
     if (t <= step.length) {
-      path->surfaces += colour_rgb(branch->weight) / (eta_observer * eta_observer) *
+      path->surfaces += colour_rgb(branch->weight) / (p->eta_observer * p->eta_observer) *
                         ground_radiance(around, p, from + t * heading, heading);
       return false;
     }
@@ -178,7 +176,7 @@ static bool step_with_care(Path* path, const Medium* medium, const Surroundings*
     if (colour_max(branch->weight) < p->min_weight) return false;
   }
   if (step.event == EVENT_FACE) {
-    path->surfaces += colour_rgb(branch->weight) / (eta_observer * eta_observer) *
+    path->surfaces += colour_rgb(branch->weight) / (p->eta_observer * p->eta_observer) *
                       surroundings_radiance(around, p, branch->ray.x, normalize(branch->ray.v));
     return false;
   }

@@ -17,6 +17,7 @@ struct VerifyOptions : TalkOptions {
   std::vector<std::string> wanted;
   std::string device, output;
   bool hard = false, quick = false, list = false, paper = false;
+  double photons = 0;
 };
 
 /// In the order of the list, each once.
@@ -52,12 +53,14 @@ void verify(const VerifyOptions& options) {
                          report_prefix(options.output.empty() ? "out/paper/" : options.output, "paper"),
                          options.quick});
   if (options.list) return print(options.json ? case_list_json(cases()) : case_list_text(cases()));
+  if (options.photons != 0 && !(options.photons >= 1000 && options.photons <= 1e12))
+    throw InputError("--photons: expected 1000 to 1e12");
   const std::vector<const Case*> chosen = chosen_cases(options);
   const std::string prefix = report_prefix(options.output, "verify");
   const cl::DeviceChoice choice = cl::choose_device(options.device);
   cl::Session session(choice);
   Progress progress(options.verbosity());
-  CaseContext context{session, progress, options.quick};
+  CaseContext context{session, progress, options.quick, static_cast<std::int64_t>(options.photons)};
   VerifyReport report{command_line(), choice.device.label(), options.quick, {}};
   for (const Case* one : chosen) {
     progress.stage(one->name);
@@ -87,6 +90,10 @@ void add_verify(CLI::App& program, Work& work) {
                    "Instead: a report on where the paper's own scheme breaks and what each remedy buys");
   command.add_flag("--quick", options->quick, "Leave out the finest level of each refinement");
   command
+      .add_option("--photons", options->photons,
+                  "Photons of each Monte Carlo run with a known answer (default: so few that it takes seconds)")
+      ->type_name("N");
+  command
       .add_option("-o,--output", options->output,
                   "Also write PREFIX.html, PREFIX.json and a CSV file per table; into a folder: DIR/verify.html, ...; "
                   "with --paper DIR/paper.html, ... (default: out/paper/)")
@@ -97,7 +104,8 @@ void add_verify(CLI::App& program, Work& work) {
       "Prints for each case its equation, the expected values with their source, what was got, the tolerance and its\n"
       "reason, and observed orders of convergence with 95 % intervals.\n"
       "Exit status: 0 all passed, 1 a case failed, 2 no such case.\n"
-      "Examples:\n  turbid verify 6 luneburg\n  turbid verify --hard\n  turbid verify --paper -o report/");
+      "Examples:\n  turbid verify 6 luneburg\n  turbid verify photon --photons 1e7\n  turbid verify --hard\n  turbid "
+      "verify --paper -o report/");
   command.callback([options, &work] { work = [options] { verify(*options); }; });
 }
 

@@ -2,6 +2,7 @@
 // Cases with a known answer: what `turbid verify` runs, what `turbid converge CASE` refines, and what ctest repeats.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -18,7 +19,10 @@ namespace turbid {
 struct CaseContext {
   cl::Session& session;
   Progress& progress;
-  bool quick = false;  ///< leave out the finest level of refinements and the most expensive checks
+  bool quick = false;        ///< leave out the finest level of refinements and the most expensive checks
+  std::int64_t photons = 0;  ///< of each Monte Carlo run against a known answer; 0: so few that it takes seconds
+
+  std::int64_t photons_or(std::int64_t usual) const { return photons > 0 ? photons : usual; }
 };
 
 /// How a value is judged.

@@ -11,5 +11,7 @@ void check_slab_photons(CaseContext&, CaseResult&);
 void check_layer_photons(CaseContext&, CaseResult&);
 void check_sphere_photons(CaseContext&, CaseResult&, bool glass);
 void check_point_photons(CaseContext&, CaseResult&);
+void check_unscattered_photons(CaseContext&, CaseResult&);
+void check_fresnel_photons(CaseContext&, CaseResult&);
 
 }  // namespace turbid::study

@@ -62,7 +62,8 @@ std::vector<std::string> survey_warnings(const Scene& scene, const MediumVolume&
         ambient ? " of the domain's own medium" : "", thickest, limit, std::ceil(resolution * thickest / limit)));
   for (const std::string& name : survey.unseen)
     warnings.push_back("object \"" + name +
-                       "\" holds no voxel's centre: light that it scatters counts as absorbed; raise the resolution");
+                       "\" holds no voxel's centre: it is hardly seen, and light that it scatters counts as absorbed; "
+                       "raise the resolution");
   if (survey.index_step > kIndexStep)
     warnings.push_back(
         text("the refractive index of \"%s\" changes by %.3g from one voxel to the next, more than %g: rays may bend "

@@ -10,6 +10,7 @@
 
 #include "host/base/parallel.h"
 #include "host/transport/device_medium.h"
+#include "host/transport/emission.h"
 #include "host/transport/fresnel_moments.h"
 #include "host/transport/hat_volume.h"
 
@@ -17,10 +18,12 @@ namespace turbid {
 namespace {
 
 constexpr int kEdge = 8, kVoxels = 512;
-constexpr int kStep[3] = {1, kEdge, kEdge * kEdge};
+constexpr int kStep[3] = {1, kEdge, kEdge* kEdge};
 
 /// Which regions are joined by a blurred index, where no interface stands.
-bool joined(const Region& a, const Region& b) { return a.smooth_surface && b.smooth_surface; }
+bool joined(const Region& a, const Region& b) {
+  return a.smooth_surface && b.smooth_surface;
+}
 
 /// Fills the voxels of one block.
 void fill_block(DiffusionMedium& out, const MediumVolume& medium, int block, const std::vector<float>& floors,
@@ -61,7 +64,8 @@ void fill_block(DiffusionMedium& out, const MediumVolume& medium, int block, con
     for (int c = 0; c < out.channels; ++c) {
       const std::size_t i = out.index(c, block, v);
       const int colour = first_colour + c;
-      // Similarity: what delta-Eddington leaves has g* = g / (1 + g); its transport coefficient is sigma_a + (1 - g) sigma_s.
+      // Similarity: what delta-Eddington leaves has g* = g / (1 + g); its transport coefficient is sigma_a + (1 - g)
+      // sigma_s.
       out.s[i] = std::max(h * (k.sigma_a[colour] + (1.0f - k.g) * k.sigma_s[colour]), floors[r]);
       out.s_a[i] = h * k.sigma_a[colour];
       out.emission[i] = k.emission[colour] * h * h * h;
@@ -132,7 +136,9 @@ class MomentCache {
   }
 
  private:
-  static double fresh_extrapolation(float inside, float outside) { return fresnel_moments(inside, outside).extrapolation(); }
+  static double fresh_extrapolation(float inside, float outside) {
+    return fresnel_moments(inside, outside).extrapolation();
+  }
   std::mutex mutex_;
   std::map<std::pair<float, float>, double> extrapolation_, resistance_;
 };
@@ -151,7 +157,9 @@ int owner_across_seam(const MediumVolume& medium, glm::ivec3 voxel) {
 }
 
 /// Index of a region at one voxel. Rounded so that a graded index asks for few different Fresnel integrals.
-float rounded_eta(float eta) { return std::round(eta * 512.0f) / 512.0f; }
+float rounded_eta(float eta) {
+  return std::round(eta * 512.0f) / 512.0f;
+}
 
 BlockFaces faces_of_block(const DiffusionMedium& out, const MediumVolume& medium, int block, MomentCache& moments) {
   BlockFaces result;
@@ -179,7 +187,8 @@ BlockFaces faces_of_block(const DiffusionMedium& out, const MediumVolume& medium
       Cut cut;
       if (r2 >= 0) {
         if (sign < 0 || r2 == r || joined(region, medium.region(r2))) continue;
-        const float eta_there = rounded_eta(std::sqrt(out.eta_squared[other.block * std::size_t{kVoxels} + other.voxel]));
+        const float eta_there =
+            rounded_eta(std::sqrt(out.eta_squared[other.block * std::size_t{kVoxels} + other.voxel]));
         if (eta_here == eta_there) continue;
         if (!at_domain_face) cut = cut_by(distances, std::max(r, r2), voxel, axis, sign);
         result.jumps.push_back({block, static_cast<std::int16_t>(v), static_cast<std::int8_t>(axis),
@@ -200,8 +209,8 @@ BlockFaces faces_of_block(const DiffusionMedium& out, const MediumVolume& medium
           a = moments.extrapolation(inside, rounded_eta(beyond.eta));
         }
       }
-      BoundaryFace boundary{block, static_cast<std::int16_t>(v), static_cast<std::int8_t>(face), boundary_is_opaque,
-                            cut.distance, {}};
+      BoundaryFace boundary{
+          block, static_cast<std::int16_t>(v), static_cast<std::int8_t>(face), boundary_is_opaque, cut.distance, {}};
       for (int c = 0; c < out.channels; ++c) {
         const double value = (2.0 * a / 3.0) / cut.normal + out.s[out.index(c, block, v)] * (cut.distance - 0.5);
         boundary.c[c] = static_cast<float>(std::max(value, 0.02));
@@ -257,6 +266,7 @@ DiffusionMedium make_diffusion_medium(const MediumVolume& medium, int channels, 
     out.index_varies |= out.eta_squared[i] != 1.0f;
   }
   out.hat_volume = hat_volumes(medium, out);
+  weigh_emission(out, medium, first_colour);
   return out;
 }
 
@@ -280,7 +290,8 @@ std::vector<float> face_conductances(const DiffusionMedium& medium) {
           for (int c = 0; c < medium.channels; ++c) {
             const double half_cells = 1.5 * (medium.s[c * stride + here] / medium.eta_squared[here] +
                                              medium.s[c * stride + there] / medium.eta_squared[there]);
-            result[(3 * c + axis) * stride + here] = static_cast<float>(1.0 / (half_cells + resistance[axis * stride + here]));
+            result[(3 * c + axis) * stride + here] =
+                static_cast<float>(1.0 / (half_cells + resistance[axis * stride + here]));
           }
         }
       }

@@ -11,9 +11,9 @@ namespace turbid {
 namespace {
 
 constexpr int kEdge = 8, kVoxels = 512;
-constexpr int kNodes = kEdge + 2;   // a block's voxels with one more on each side
-constexpr int kSamples = 4;         // per cell and axis
-constexpr int kBoxSamples = 8;      // per voxel and axis
+constexpr int kNodes = kEdge + 2;  // a block's voxels with one more on each side
+constexpr int kSamples = 4;        // per cell and axis
+constexpr int kBoxSamples = 8;     // per voxel and axis
 
 /// Distances of all bodies at the nodes around one block.
 struct Nodes {
@@ -100,26 +100,51 @@ void fill_block(const MediumVolume& medium, const DiffusionMedium& diffusion, in
   for (int v = 0; v < kVoxels; ++v) out[v] = std::max(out[v], 0.02f);
 }
 
-/// Volume of a voxel's part in region r: the eight cells that meet at its centre hold an eighth of it each.
+/// True if one region fills the eight cells that meet at a voxel's centre and hold an eighth of it each.
+bool whole(const Nodes& nodes, glm::ivec3 voxel) {
+  for (int k = 0; k < 8; ++k)
+    if (!uniform(nodes, Nodes::index(voxel.x + (k & 1), voxel.y + (k >> 1 & 1), voxel.z + (k >> 2)))) return false;
+  return true;
+}
+
+constexpr int kBoxPoints = kBoxSamples * kBoxSamples * kBoxSamples;
+
+/// Point i of the samples of a voxel, from its lower corner [voxels].
+glm::vec3 sample_point(int i) {
+  return (glm::vec3(i % kBoxSamples, i / kBoxSamples % kBoxSamples, i / (kBoxSamples * kBoxSamples)) + 0.5f) /
+         static_cast<float>(kBoxSamples);
+}
+
+int region_of_sample(const Nodes& nodes, glm::ivec3 voxel, int i) {
+  const glm::vec3 place = sample_point(i) + 0.5f;  // from the node before the voxel's own
+  const glm::ivec3 cell(place);
+  const glm::vec3 f = place - glm::vec3(cell);
+  return region_at(nodes, Nodes::index(voxel.x + cell.x, voxel.y + cell.y, voxel.z + cell.z), f.x, f.y, f.z);
+}
+
+/// Volume of a voxel's part in region r.
 float box_volume(const Nodes& nodes, glm::ivec3 voxel, int r) {
-  bool whole = true;
-  for (int k = 0; k < 8 && whole; ++k)
-    whole = uniform(nodes, Nodes::index(voxel.x + (k & 1), voxel.y + (k >> 1 & 1), voxel.z + (k >> 2)));
-  if (whole) return 1.0f;
+  if (whole(nodes, voxel)) return 1.0f;
   int inside = 0;
-  for (int i = 0; i < kBoxSamples * kBoxSamples * kBoxSamples; ++i) {
-    const glm::vec3 place = (glm::vec3(i % kBoxSamples, i / kBoxSamples % kBoxSamples, i / (kBoxSamples * kBoxSamples)) + 0.5f) /
-                                static_cast<float>(kBoxSamples) + 0.5f;  // from the node before the voxel's own
-    const glm::ivec3 cell(place);
-    const glm::vec3 f = place - glm::vec3(cell);
-    inside += region_at(nodes, Nodes::index(voxel.x + cell.x, voxel.y + cell.y, voxel.z + cell.z), f.x, f.y, f.z) == r;
+  for (int i = 0; i < kBoxPoints; ++i) inside += region_of_sample(nodes, voxel, i) == r;
+  return std::max(static_cast<float>(inside) / kBoxPoints, 0.02f);
+}
+
+void add_parts(const Nodes& nodes, glm::ivec3 lower, glm::ivec3 voxel, std::vector<VoxelPart>& out) {
+  std::vector<VoxelPart> parts(nodes.body.size());
+  for (int i = 0; i < kBoxPoints; ++i) {
+    VoxelPart& part = parts[static_cast<std::size_t>(region_of_sample(nodes, voxel, i))];
+    if (part.volume == 0.0f) part.inside = sample_point(i);
+    part.volume += 1.0f / kBoxPoints;
   }
-  return std::max(static_cast<float>(inside) / (kBoxSamples * kBoxSamples * kBoxSamples), 0.02f);
+  for (std::size_t r = 0; r < parts.size(); ++r)
+    if (parts[r].volume > 0.0f) out.push_back({lower + voxel, static_cast<int>(r), parts[r].volume, parts[r].inside});
 }
 
 }  // namespace
 
-std::vector<float> box_volumes(const MediumVolume& medium, const BlockGrid& blocks, const std::vector<std::int16_t>& region) {
+std::vector<float> box_volumes(const MediumVolume& medium, const BlockGrid& blocks,
+                               const std::vector<std::int16_t>& region) {
   std::vector<float> result(region.size(), 0.0f);
   parallel_ranges(blocks.count(), [&](int begin, int end) {
     Nodes nodes;
@@ -132,6 +157,26 @@ std::vector<float> box_volumes(const MediumVolume& medium, const BlockGrid& bloc
       }
     }
   });
+  return result;
+}
+
+std::vector<VoxelPart> parts_of_cut_voxels(const MediumVolume& medium) {
+  const glm::ivec3 blocks = medium.frame().blocks();
+  std::vector<std::vector<VoxelPart>> of_block(static_cast<std::size_t>(blocks.x) * blocks.y * blocks.z);
+  parallel_ranges(static_cast<int>(of_block.size()), [&](int begin, int end) {
+    Nodes nodes;
+    for (int block = begin; block < end; ++block) {
+      const glm::ivec3 lower =
+          kEdge * glm::ivec3(block % blocks.x, block / blocks.x % blocks.y, block / (blocks.x * blocks.y));
+      if (!read_nodes(medium, lower, nodes)) continue;
+      for (int v = 0; v < kVoxels; ++v) {
+        const glm::ivec3 voxel(v % kEdge, v / kEdge % kEdge, v / (kEdge * kEdge));
+        if (!whole(nodes, voxel)) add_parts(nodes, lower, voxel, of_block[block]);
+      }
+    }
+  });
+  std::vector<VoxelPart> result;
+  for (const std::vector<VoxelPart>& parts : of_block) result.insert(result.end(), parts.begin(), parts.end());
   return result;
 }
 

@@ -5,46 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/transport/nearest_voxels.h"
+
 namespace turbid {
 namespace {
 
 constexpr int kEdge = 8, kVoxels = 512, kTileEdge = TURBID_TILE_EDGE;
-
-struct Target {
-  std::size_t at;
-  float weight;
-  glm::ivec3 offset;  // of the node from the voxel, in voxels
-};
-
-/// Active voxels of region r within `reach` of a voxel, with weights 1 / distance^2.
-std::vector<Target> nearest(const DiffusionMedium& medium, glm::ivec3 voxel, int region, int reach) {
-  std::vector<Target> targets;
-  for (int dz = -reach; dz <= reach; ++dz) {
-    for (int dy = -reach; dy <= reach; ++dy) {
-      for (int dx = -reach; dx <= reach; ++dx) {
-        const glm::ivec3 v = voxel + glm::ivec3(dx, dy, dz);
-        if (glm::any(glm::lessThan(v, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(v, medium.frame.voxels))) continue;
-        const int block = medium.blocks.find(v / kEdge);
-        if (block < 0) continue;
-        const glm::ivec3 local = v % kEdge;
-        const std::size_t at = block * std::size_t{kVoxels} + local.x + kEdge * (local.y + kEdge * local.z);
-        if (medium.region[at] != region) continue;
-        targets.push_back({at, 1.0f / static_cast<float>(dx * dx + dy * dy + dz * dz), {-dx, -dy, -dz}});
-      }
-    }
-  }
-  return targets;
-}
-
-/// Active voxels of the region that a node outside its own voxels belongs to.
-std::vector<Target> targets_of(const DiffusionMedium& medium, glm::ivec3 node, int region) {
-  std::vector<Target> targets = nearest(medium, node, region, 1);
-  for (int reach = 2; targets.empty() && reach <= 3; ++reach) targets = nearest(medium, node, region, reach);
-  double total = 0;
-  for (const Target& target : targets) total += target.weight;
-  for (Target& target : targets) target.weight = static_cast<float>(target.weight / total);
-  return targets;
-}
 
 }  // namespace
 
@@ -76,24 +42,26 @@ LightSource gather_source(const std::vector<std::int64_t>& deposit, const std::v
       const glm::ivec3 inside = glm::min(voxel, medium.frame.voxels - 1);
       const int block = medium.blocks.find(inside / kEdge);
       const glm::ivec3 local = inside % kEdge;
-      const std::size_t at = block < 0 ? 0 : block * std::size_t{kVoxels} + local.x + kEdge * (local.y + kEdge * local.z);
+      const std::size_t at =
+          block < 0 ? 0 : block * std::size_t{kVoxels} + local.x + kEdge * (local.y + kEdge * local.z);
       const auto add_moment = [&](std::size_t to, double share) {
         if (!moments) return;
         const std::size_t from = (tile * TURBID_TILE_NODES + i) * channels;
         for (int axis = 0; axis < 3; ++axis)
           for (int c = 0; c < channels; ++c)
-            moment[(axis * channels + c) * stride + to] += medium.g_star[to] * share * watts_per_unit *
-                                                           static_cast<double>(flux[axis * nodes * channels + from + c]);
+            moment[(axis * channels + c) * stride + to] +=
+                medium.g_star[to] * share * watts_per_unit *
+                static_cast<double>(flux[axis * nodes * channels + from + c]);
       };
       if (block >= 0 && medium.region[at] == where.region) {
         for (int c = 0; c < channels; ++c) own[c * stride + at] += watts_per_unit * static_cast<double>(node[c]);
         add_moment(at, 1);
         continue;
       }
-      const std::vector<Target> targets = targets_of(medium, inside, where.region);
+      const std::vector<NearVoxel> targets = nearest_voxels(medium, inside, where.region);
       for (int c = 0; c < channels && targets.empty(); ++c)
         source.unresolved[c] += watts_per_unit * static_cast<double>(node[c]);
-      for (const Target& target : targets) {
+      for (const NearVoxel& target : targets) {
         add_moment(target.at, target.weight);
         for (int c = 0; c < channels; ++c) {
           const double power = watts_per_unit * static_cast<double>(node[c]) * target.weight;

@@ -10,12 +10,12 @@
 namespace turbid {
 
 struct LightSource {
-  std::vector<float> power;     ///< [channel][block][voxel] source of the diffusion [W], emission included
-  std::vector<float> density;   ///< [channel][block][voxel] first-scattered power per volume [W/voxel^3]
-  glm::dvec3 deposited{0};      ///< summed deposits, per channel [W]
-  glm::dvec3 emitted{0};        ///< by emitting media [W]
-  glm::dvec3 unresolved{0};     ///< deposits near which no active voxel is [W]: parts thinner than a voxel
-  LeftAtOnce left;              ///< of the deposits, what leaves through surfaces without diffusing
+  std::vector<float> power;    ///< [channel][block][voxel] source of the diffusion [W], emission included
+  std::vector<float> density;  ///< [channel][block][voxel] first-scattered power per volume [W/voxel^3]
+  glm::dvec3 deposited{0};     ///< summed deposits, per channel [W]
+  glm::dvec3 emitted{0};       ///< by emitting media [W]
+  glm::dvec3 unresolved{0};    ///< deposits near which no active voxel is [W]: parts thinner than a voxel
+  LeftAtOnce left;             ///< of the deposits, what leaves through surfaces without diffusing
 };
 
 /// Deposits on nodes outside a region's own voxels go to its nearest active voxels, in equal shares of inverse square

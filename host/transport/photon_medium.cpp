@@ -77,8 +77,8 @@ std::vector<float> coefficient_tiles(const MediumVolume& medium, const DeviceMed
 }
 
 /// Largest sigma_s + sigma_a among the nodes that interpolation inside a block of voxels may read.
-std::vector<float> majorants(const MediumVolume& medium, const DeviceMedium& device, const std::vector<PhotonRegion>& regions,
-                             int sets) {
+std::vector<float> majorants(const MediumVolume& medium, const DeviceMedium& device,
+                             const std::vector<PhotonRegion>& regions, int sets) {
   const glm::ivec3 blocks = device.frame.blocks();
   const int channels = device.features.channels, block_count = device.block_count();
   std::vector<float> out(static_cast<std::size_t>(channels) * sets * block_count, 0.0f);
@@ -93,7 +93,8 @@ std::vector<float> majorants(const MediumVolume& medium, const DeviceMedium& dev
         for (const Coefficients& k : nodes) largest = glm::max(largest, k.sigma_s + k.sigma_a);
         // A little more than the largest node: interpolated values round up.
         for (int c = 0; c < channels; ++c)
-          out[(static_cast<std::size_t>(c) * sets + set) * block_count + block] = device.frame.voxel_size * largest[c] * 1.00001f;
+          out[(static_cast<std::size_t>(c) * sets + set) * block_count + block] =
+              device.frame.voxel_size * largest[c] * 1.00001f;
       }
     });
   }
@@ -120,6 +121,13 @@ PhotonMedium upload_photon_medium(cl::Session& session, const MediumVolume& medi
   parallel_ranges(out.blocks.count(), [&](int begin, int end) {
     for (int block = begin; block < end; ++block) fill_block(out, medium, block, floors);
   });
+  CutEmission cut = cut_emission(medium);
+  for (const glm::ivec3& voxel : cut.voxels) {
+    const int block = out.blocks.find(voxel / 8);
+    const glm::ivec3 local = voxel % 8;
+    if (block >= 0) out.emission[block * std::size_t{kVoxels} + local.x + 8 * (local.y + 8 * local.z)] = glm::vec3(0);
+  }
+  out.emitting_parts = std::move(cut.parts);
   out.active_voxels = out.stride() - std::count(out.region.begin(), out.region.end(), std::int16_t{-1});
   out.volume = box_volumes(medium, out.blocks, out.region);
 
@@ -140,14 +148,15 @@ PhotonMedium upload_photon_medium(cl::Session& session, const MediumVolume& medi
   const std::vector<float> tiles = coefficient_tiles(medium, device, out.coefficient_tiles);
   const std::vector<float> bounds = majorants(medium, device, regions, out.majorant_sets);
   std::vector<int> block_index(block_count);
-  for (int block = 0; block < block_count; ++block) block_index[block] = out.blocks.find(block_coordinates(block, blocks));
+  for (int block = 0; block < block_count; ++block)
+    block_index[block] = out.blocks.find(block_coordinates(block, blocks));
 
   out.fingerprint = 0xcbf29ce484222325ull;
-  for (const auto hash : {fingerprint(0, regions), fingerprint(0, tiles), fingerprint(0, bounds), fingerprint(0, block_index),
-                          fingerprint(0, out.region), fingerprint(0, device.region_params), fingerprint(0, device.tile_map),
-                          fingerprint(0, device.block_region),
-                          fingerprint(0, session.read(session.march_queue(), device.distance_tiles)),
-                          fingerprint(0, session.read(session.march_queue(), device.index_tiles))}) {
+  for (const auto hash :
+       {fingerprint(0, regions), fingerprint(0, tiles), fingerprint(0, bounds), fingerprint(0, block_index),
+        fingerprint(0, out.region), fingerprint(0, device.region_params), fingerprint(0, device.tile_map),
+        fingerprint(0, device.block_region), fingerprint(0, session.read(session.march_queue(), device.distance_tiles)),
+        fingerprint(0, session.read(session.march_queue(), device.index_tiles))}) {
     out.fingerprint = fingerprint(out.fingerprint, &hash, sizeof hash);
   }
   out.regions_buffer = session.upload(regions);

@@ -23,7 +23,8 @@ int region_around(const Light& light, const MediumVolume& medium, const EntrySur
   return owner[0] > 0 || (owner[0] == 0 && (surfaces.ambient || nothing_to_enter)) ? owner[0] : -1;
 }
 
-void add_inside(PhotonSources& out, const Light& light, int region, const GridFrame& frame, const SceneFeatures& features) {
+void add_inside(PhotonSources& out, const Light& light, int region, const GridFrame& frame,
+                const SceneFeatures& features) {
   PhotonSource source{};
   copy((light.position - frame.origin) / frame.voxel_size, source.position);
   source.region = region;
@@ -57,18 +58,24 @@ void add_rays(PhotonSources& out, const LightRays& rays) {
 }
 
 void add_emission(PhotonSources& out, const PhotonMedium& medium, const SceneFeatures& features) {
-  for (std::size_t at = 0; at < medium.emission.size(); ++at) {
-    if (medium.emission[at] == glm::vec3(0)) continue;
-    const int voxel = static_cast<int>(at % 512);
+  const auto add = [&](glm::ivec3 voxel, int region, glm::vec3 inside, glm::vec3 watts) {
     PhotonSource source{};
-    copy(glm::vec3(8 * medium.blocks.coordinates(static_cast<int>(at / 512)) + glm::ivec3(voxel % 8, voxel / 8 % 8, voxel / 64)),
-         source.position);
-    source.region = medium.region[at];
+    copy(glm::vec3(voxel), source.position);
+    copy(inside, source.normal);
+    source.region = region;
     source.kind = TURBID_SOURCE_VOXEL;
-    const glm::dvec3 power(features.to_channels(medium.emission[at]));
+    const glm::dvec3 power(features.to_channels(watts));
     out.emitted += power;
     out.add(source, power);
+  };
+  for (std::size_t at = 0; at < medium.emission.size(); ++at) {
+    if (medium.emission[at] == glm::vec3(0)) continue;
+    const int v = static_cast<int>(at % 512);
+    add(8 * medium.blocks.coordinates(static_cast<int>(at / 512)) + glm::ivec3(v % 8, v / 8 % 8, v / 64),
+        medium.region[at], glm::vec3(0.5f), medium.emission[at]);
   }
+  for (const EmittingPart& part : medium.emitting_parts)
+    if (part.power != glm::vec3(0)) add(part.voxel, part.region, part.inside, part.power);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "host/view/view_pass.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -16,7 +17,7 @@
 namespace turbid {
 namespace {
 
-constexpr int kSamplesPerLaunch = 1 << 16;  // Ctrl-C is answered between launches
+constexpr int kSamplesPerLaunch = 1 << 16;             // Ctrl-C is answered between launches
 constexpr int kInterleave = 8, kSamplesPerClaim = 64;  // of a CPU's work-item; a GPU's takes one sample
 
 int kind_of(const Light& light) {
@@ -64,10 +65,24 @@ ViewParams make_params(const ViewInput& in, const VoxelSpace& space) {
   return p;
 }
 
+/// Index of the ambient where the camera stands; of one outside the domain, at the nearest point of its faces.
+float eta_at_camera(const MediumVolume& medium, glm::vec3 camera) {
+  if (!medium.region(0).graded_index) return medium.region(0).eta;
+  const glm::vec3 last(medium.frame().voxels - 1);
+  const glm::vec3 y = glm::clamp(camera - 0.5f, glm::vec3(0), last);
+  const glm::ivec3 lower = glm::min(glm::ivec3(y), medium.frame().voxels - 2);
+  const glm::vec3 f = y - glm::vec3(lower);
+  std::array<float, 8> eta{};
+  medium.read_eta(0, lower, glm::ivec3(2), eta);
+  float result = 0;
+  for (int k = 0; k < 8; ++k)
+    result += (k & 1 ? f.x : 1 - f.x) * (k & 2 ? f.y : 1 - f.y) * (k & 4 ? f.z : 1 - f.z) * eta[k];
+  return result;
+}
+
 std::vector<LightParams> make_lights(const ViewInput& in, const VoxelSpace& space, std::vector<float>* depths) {
   const float h = space.frame.voxel_size;
-  const glm::mat4 voxel_to_world =
-      glm::scale(glm::translate(glm::mat4(1), space.frame.origin), glm::vec3(h));
+  const glm::mat4 voxel_to_world = glm::scale(glm::translate(glm::mat4(1), space.frame.origin), glm::vec3(h));
   std::vector<LightParams> lights;
   for (std::size_t i = 0; i < in.lights.size(); ++i) {
     const Light& light = in.lights[i];
@@ -96,7 +111,8 @@ std::vector<LightParams> make_lights(const ViewInput& in, const VoxelSpace& spac
 }
 
 /// Box filter over a pixel's samples.
-void resolve(const Strip& strip, const std::vector<float>& radiance, int first_row, int last_row, int grid, ViewImage* image) {
+void resolve(const Strip& strip, const std::vector<float>& radiance, int first_row, int last_row, int grid,
+             ViewImage* image) {
   const int width = image->width;
   const float weight = 1.0f / static_cast<float>(grid * grid);
   for (int y = first_row; y < last_row; ++y) {
@@ -104,7 +120,8 @@ void resolve(const Strip& strip, const std::vector<float>& radiance, int first_r
       glm::vec3 direct(0), scattered(0), normal(0);
       float coverage = 0, depth = kFarAway;
       for (int k = 0; k < grid * grid; ++k) {
-        const std::size_t i = static_cast<std::size_t>((y - first_row) * grid + k / grid) * (width * grid) + x * grid + k % grid;
+        const std::size_t i =
+            static_cast<std::size_t>((y - first_row) * grid + k / grid) * (width * grid) + x * grid + k % grid;
         direct += weight * glm::vec3(radiance[8 * i], radiance[8 * i + 1], radiance[8 * i + 2]);
         scattered += weight * glm::vec3(radiance[8 * i + 4], radiance[8 * i + 5], radiance[8 * i + 6]);
         normal += strip.normal[i];
@@ -149,7 +166,9 @@ struct ViewPass::Prepared {
         params(make_params(in, space)) {
     std::vector<float> depth_values, ground_values, transmittance_values;
     lights = session.upload(make_lights(in, space, &depth_values));
-    const auto append = [](std::vector<float>& to, glm::vec3 texel) { to.insert(to.end(), {texel.r, texel.g, texel.b}); };
+    const auto append = [](std::vector<float>& to, glm::vec3 texel) {
+      to.insert(to.end(), {texel.r, texel.g, texel.b});
+    };
     for (const glm::vec3& texel : in.solution.ground.irradiance) append(ground_values, texel);
     for (const ShadowMap& shadow : in.solution.shadows) {
       for (const glm::vec3& share : shadow.transmittance) append(transmittance_values, share);
@@ -158,8 +177,9 @@ struct ViewPass::Prepared {
     depths = session.upload(depth_values);
     ground = session.upload(ground_values);
     transmittance = session.upload(transmittance_values);
-    tiles = session.upload(in.features.scattering ? make_source_tiles(in.solution.volume, in.medium, *in.solution.device)
-                                                  : std::vector<float>{});
+    tiles =
+        session.upload(in.features.scattering ? make_source_tiles(in.solution.volume, in.medium, *in.solution.device)
+                                              : std::vector<float>{});
   }
 };
 
@@ -188,6 +208,7 @@ ViewImage ViewPass::look(const Camera& camera, const std::function<void(double)>
   const bool cpu = p.session.device().cpu;
   cl::Queue& queue = p.session.march_queue();
   ViewParams params = p.params;
+  params.eta_observer = eta_at_camera(p.in.medium, p.space.point(camera.position));
   for (int row = 0; row < image.height; row += rows) {
     const int end = std::min(row + rows, image.height);
     const Strip strip = maker.strip(row, end);
@@ -196,9 +217,10 @@ ViewImage ViewPass::look(const Camera& camera, const std::function<void(double)>
     p.session.fill_zero(queue, claims);
     // A CPU's work-items take samples until none is left, one work-item per core; a GPU's take one each.
     const std::size_t items = cpu ? p.session.device().compute_units : strip.samples.size();
-    p.kernel.enqueue(queue, {items}, {cpu ? std::size_t{1} : std::size_t{64}}, medium.regions_buffer, medium.tile_map_buffer,
-                     medium.block_region_buffer, medium.distance_tiles, medium.index_tiles, medium.coefficient_tiles,
-                     params, samples, claims, p.tiles, p.lights, p.depths, p.transmittance, p.ground, radiance);
+    p.kernel.enqueue(queue, {items}, {cpu ? std::size_t{1} : std::size_t{64}}, medium.regions_buffer,
+                     medium.tile_map_buffer, medium.block_region_buffer, medium.distance_tiles, medium.index_tiles,
+                     medium.coefficient_tiles, params, samples, claims, p.tiles, p.lights, p.depths, p.transmittance,
+                     p.ground, radiance);
     std::vector<float> values(8 * strip.samples.size());
     p.session.read(queue, radiance, std::span<float>(values));
     resolve(strip, values, row, end, maker.grid(), &image);

@@ -68,6 +68,19 @@ static float4 interpolate4(const global float* tiles, int tile, Cell cell) {
   return row.lo + cell.fraction.x * (row.hi - row.lo);
 }
 
+// Gradient of the last component's trilinear interpolant [per voxel].
+static float3 slope4(const global float* tiles, int tile, Cell cell) {
+  const global float* at = tiles + 4 * ((size_t)tile * TURBID_TILE_NODES + cell.node);
+  const int up = 4 * TURBID_TILE_EDGE, back = up * TURBID_TILE_EDGE;
+  const float2 a = (float2)(at[3], at[7]), b = (float2)(at[up + 3], at[up + 7]);
+  const float2 c = (float2)(at[back + 3], at[back + 7]), d = (float2)(at[back + up + 3], at[back + up + 7]);
+  const float2 low = a + cell.fraction.z * (c - a), high = b + cell.fraction.z * (d - b);
+  const float2 row = low + cell.fraction.y * (high - low), along_y = high - low;
+  const float2 along_z = (c - a) + cell.fraction.y * ((d - b) - (c - a));
+  return (float3)(row.y - row.x, along_y.x + cell.fraction.x * (along_y.y - along_y.x),
+                  along_z.x + cell.fraction.x * (along_z.y - along_z.x));
+}
+
 static int tile_of(const Medium* medium, int set, int block) { return medium->tile_map[set * BLOCKS + block]; }
 
 // Gradient [1] and signed distance [voxels] of a body's surface; defined in blocks with a tile only.

@@ -43,9 +43,9 @@ static bool start(Photon* photon, const Medium* medium, const PhotonParams* p, c
   float3 direction = vload3(0, source->direction);
   if (source->kind == TURBID_SOURCE_VOXEL) {
     const float3 lower = ray->x;
-    ray->x = lower + 0.5f;
-    // A few tries find the voxel's part in its region; its centre lies in there for certain.
-    for (int i = 0; i < 16; ++i) {
+    ray->x = lower + vload3(0, source->normal);
+    // A few tries find the voxel's part in its region, but for slivers, which have a point of theirs.
+    for (int i = 0; i < 64; ++i) {
       const uint4 place = draw(&photon->random);
       const float3 x = lower + (float3)(uniform(place.x), uniform(place.y), uniform(place.z));
       if (region_at(medium, locate(x)) == ray->region) {

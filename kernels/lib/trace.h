@@ -19,9 +19,12 @@ typedef struct {
   float grace;   // see RayState
 } Ray;
 
-// Arc length [voxels] after an interface in which the sampled surface is not looked at again: a grazing ray stays within the
-// sampling's ripples for a while and would meet the same surface many times over.
+// Arc length [voxels] after an interface in which the ray may stand on the wrong side of the sampled surface: a grazing ray
+// stays within the sampling's ripples for a while and would meet the same surface many times over.
 #define GRACE 0.5f
+// As deep as that [voxels] the ripples reach: 1/(6 R) on average on a ball of radius R voxels. A ray that comes farther out
+// has met another face of the body, near an edge or behind a thin sheet.
+#define RIPPLE 0.1f
 
 #define EVENT_NONE 0      // the whole step was done
 #define EVENT_SURFACE 1   // the ray stands just before another region's surface
@@ -61,6 +64,23 @@ static float distance_to_block_end(float3 x, float3 direction) {
   return fmax(result, 0.0f) + 0.01f;
 }
 
+// Below this square of its length the interpolated gradient averages over an edge of the body.
+#define SMOOTH_GRADIENT 0.9f
+
+// Unit normal of a body's surface, outward. Central differences of the distance have length 1 and are second order where the
+// surface is smooth; within a voxel and a half of an edge they turn away from the flat face that the rays meet, by up to 45
+// degrees, and light that enters and light that leaves no longer balance. There the gradient of the interpolant itself holds:
+// its zero crossing is that very face.
+static float3 surface_normal(const Medium* medium, int body, float3 x) {
+  const Cell cell = locate(x);
+  float3 gradient = surface_at(medium, body, cell).xyz;
+  if (dot(gradient, gradient) < SMOOTH_GRADIENT) {
+    const int tile = tile_of(medium, medium->regions[body].distance_set, cell.block);
+    if (tile >= 0) gradient = slope4(medium->distance_tiles, tile, cell);
+  }
+  return gradient * rsqrt(fmax(dot(gradient, gradient), 1e-12f));
+}
+
 // Narrows the first change of region on the segment a-b down to 2^-6 of it, then takes the zero of the signed distance by
 // the secant: `before` stays in `region`, `beyond` is in the next one.
 static void find_crossing(const Medium* medium, Step* step, int region, float3 a, float3 b, float3* before) {
@@ -97,6 +117,12 @@ static void find_crossing(const Medium* medium, Step* step, int region, float3 a
   }
   *before = a + low * (b - a);
   step->beyond = a + high * (b - a);
+}
+
+// How far a point lies on the other side of the surface between two regions [voxels].
+static float depth_beyond(const Medium* medium, int region, int next, float3 x) {
+  const float outside = surface_at(medium, max(region, next), locate(x)).w;
+  return region > next ? outside : -outside;
 }
 
 // Advances the ray by at most `step_size` of arc (farther where nothing can happen on the way) and says what stopped it.
@@ -159,12 +185,20 @@ static Step advance(const Medium* medium, Ray* ray, float step_size, float room)
     step.room = 0.0f;
     // A ray that starts on the rasterised surface may find itself a little on the wrong side of the sampled one, which is
     // coarser: it keeps its region while it gets clear.
-    const bool getting_clear = ray->grace > 0.0f && step.event == EVENT_NONE;
+    const bool getting_clear = ray->grace > 0.0f && step.event == EVENT_NONE &&
+                               depth_beyond(medium, ray->region, there, to) <
+                                   fmax(depth_beyond(medium, ray->region, there, from), RIPPLE);
     if (!getting_clear) {
-      step.event = EVENT_SURFACE;
       step.next_region = there;
-      const float3 end = to;
-      find_crossing(medium, &step, ray->region, from, end, &to);
+      float3 before;
+      find_crossing(medium, &step, ray->region, from, to, &before);
+      // At a kink of the sampled surface the ray may find itself outside while it heads inwards: it goes on, for reflected by
+      // that normal it would come back to where it is, for ever.
+      const float outwards = dot(v, surface_normal(medium, step.surface, step.beyond));
+      if (step.surface == ray->region ? outwards >= 0.0f : outwards <= 0.0f) {
+        step.event = EVENT_SURFACE;
+        to = before;
+      }
     }
   }
 #endif
@@ -272,12 +306,6 @@ static bool index_matched(const Medium* medium, int a, int b, float eta_a, float
   if (medium->regions[a].smooth_group && medium->regions[b].smooth_group) return true;
   const bool graded = medium->regions[a].index_set >= 0 || medium->regions[b].index_set >= 0;
   return fabs(eta_a - eta_b) <= (graded ? 3e-3f : 1e-6f);
-}
-
-// Unit normal of a body's surface, outward.
-static float3 surface_normal(const Medium* medium, int body, float3 x) {
-  const float3 gradient = surface_at(medium, body, locate(x)).xyz;
-  return gradient * rsqrt(fmax(dot(gradient, gradient), 1e-12f));
 }
 
 #endif

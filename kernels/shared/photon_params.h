@@ -17,7 +17,7 @@ typedef struct {
   int region;
   float direction[3];    // unit
   float grace;           // see RayState
-  float normal[3];       // outward, of the surface to enter
+  float normal[3];       // outward, of the surface to enter; of a voxel: a point of its part, from the lower corner
   int kind;              // TURBID_SOURCE_...
   float cos_half_angle;  // of a cone
   float padding[3];

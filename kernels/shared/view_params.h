@@ -52,7 +52,8 @@ typedef struct {
   float ground_map_texel;      // [voxels]
   float origin[3];        // scene position of the domain's corner, in voxels, so that checkerboards stay put
   float tint[3];          // colour of the one channel of a grey scene
+  float eta_observer;     // index of the ambient where the camera is
 } ViewParams;
-TURBID_ASSERT_SIZE(ViewParams, 116);
+TURBID_ASSERT_SIZE(ViewParams, 120);
 
 #endif

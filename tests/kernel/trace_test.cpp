@@ -204,9 +204,14 @@ TEST(Rays, AStartJustOutsideTheSampledSurfaceIsForgiven) {
                  test::make_material({.sigma_s = glm::vec3(0.1f), .eta = 1.5f}));
   const DeviceMedium medium = upload(scene);
   std::vector<test::ProbeRay> rays{{{5.95f, 16, 16}, {1, 0, 0}, 1}};
-  rays[0].v = {0.1f, 0.99f, 0};  // its first step ends outside
+  rays[0].v = {0.1f, 0.99f, 0};  // its first step ends outside, but it heads inwards
+  EXPECT_EQ(step_once(medium, rays, 0.5f, 1.5f)[0].event, kNone);
+  EXPECT_EQ(step_once(medium, rays, 0.5f, 0.0f)[0].event, kNone);
+  rays[0].v = {-0.02f, 0.99f, 0};  // outwards, within the sampling's ripples
   EXPECT_EQ(step_once(medium, rays, 0.5f, 1.5f)[0].event, kNone);
   EXPECT_EQ(step_once(medium, rays, 0.5f, 0.0f)[0].event, kSurface);
+  rays[0].v = {-0.5f, 0.8f, 0};  // and beyond them
+  EXPECT_EQ(step_once(medium, rays, 0.5f, 1.5f)[0].event, kSurface);
   rays[0] = {{0.1f, 16, 16}, {-1, 0, 0}, 0};
   EXPECT_EQ(step_once(medium, rays, 0.5f, 1.5f)[0].event, kFace);
 }

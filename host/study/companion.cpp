@@ -79,15 +79,12 @@ SampledFluence sample_fluence(const FluenceVolume& volume, const MediumVolume& m
 }
 
 std::vector<std::vector<float>> common_values(const SampledFluence& coarse,
-                                              const std::vector<const SampledFluence*>& fine) {
+                                              const std::vector<const SampledFluence*>& fine, double least_share) {
   std::vector<std::vector<float>> values(1 + fine.size());
   if (fine.empty()) return values;
   std::vector<Alignment> to_fine;
-  std::vector<std::vector<std::size_t>> at(fine.size());  // of the finer voxels of one coarse voxel, per grid
-  for (const SampledFluence* each : fine) {
-    to_fine.push_back(align(coarse.total.frame, each->total.frame));
-    at[to_fine.size() - 1].resize(static_cast<std::size_t>(std::pow(to_fine.back().times, 3) + 0.5));
-  }
+  std::vector<std::vector<std::size_t>> at(fine.size());  // of the active finer voxels of one coarse voxel, per grid
+  for (const SampledFluence* each : fine) to_fine.push_back(align(coarse.total.frame, each->total.frame));
   const std::size_t coarse_stride = coarse.total.colour_stride();
   for (int block = 0; block < coarse.total.blocks.count(); ++block)
     for (int v = 0; v < coarse.total.blocks.voxels_per_block(); ++v) {
@@ -97,13 +94,14 @@ std::vector<std::vector<float>> common_values(const SampledFluence& coarse,
                                glm::ivec3(v % kBlockEdge, v / kBlockEdge % kBlockEdge, v / (kBlockEdge * kBlockEdge));
       bool whole = true;
       for (std::size_t f = 0; f < fine.size() && whole; ++f) {
-        const int times = to_fine[f].times;
-        for (int child = 0; child < static_cast<int>(at[f].size()) && whole; ++child) {
+        const int times = to_fine[f].times, children = times * times * times;
+        at[f].clear();
+        for (int child = 0; child < children; ++child) {
           const glm::ivec3 within(child % times, child / times % times, child / (times * times));
           const std::size_t j = index_of(fine[f]->total, voxel * times + within + to_fine[f].shift);
-          whole = j != std::size_t(-1) && fine[f]->media[j].participates;
-          at[f][static_cast<std::size_t>(child)] = j;
+          if (j != std::size_t(-1) && fine[f]->media[j].participates) at[f].push_back(j);
         }
+        whole = !at[f].empty() && static_cast<double>(at[f].size()) >= least_share * children;
       }
       if (!whole) continue;
       for (std::size_t c = 0; c < 3; ++c) {

@@ -22,11 +22,13 @@ struct SampledFluence {
 };
 SampledFluence sample_fluence(const FluenceVolume&, const MediumVolume&);
 
-/// Values colour by colour at the voxels of `coarse` whose finer voxels (those of every one of `fine`) are all active:
-/// the fluence of `coarse` first, then the mean of each of `fine`. Each grid is a whole number of times finer than the
-/// coarse one, or as fine, and aligned with it; it may reach further. Throws std::invalid_argument if one is not.
+/// Values colour by colour at the voxels of `coarse` of whose finer voxels (those of every one of `fine`) at least this
+/// share is active: the fluence of `coarse` first, then the mean of each of `fine` over its active ones. Each grid is a
+/// whole number of times finer than the coarse one, or as fine, and aligned with it; it may reach further. Throws
+/// std::invalid_argument if one is not.
 std::vector<std::vector<float>> common_values(const SampledFluence& coarse,
-                                              const std::vector<const SampledFluence*>& fine);
+                                              const std::vector<const SampledFluence*>& fine,
+                                              double least_share = 1);
 
 /// sqrt(sum (a - b)^2 / sum b^2); 0 / 0 is 0.
 double relative_l2(const std::vector<float>& a, const std::vector<float>& b);

@@ -27,8 +27,7 @@ SampledFluence sample_fluence(const FluenceVolume&, const MediumVolume&);
 /// whole number of times finer than the coarse one, or as fine, and aligned with it; it may reach further. Throws
 /// std::invalid_argument if one is not.
 std::vector<std::vector<float>> common_values(const SampledFluence& coarse,
-                                              const std::vector<const SampledFluence*>& fine,
-                                              double least_share = 1);
+                                              const std::vector<const SampledFluence*>& fine, double least_share = 1);
 
 /// sqrt(sum (a - b)^2 / sum b^2); 0 / 0 is 0.
 double relative_l2(const std::vector<float>& a, const std::vector<float>& b);

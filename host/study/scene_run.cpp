@@ -17,10 +17,11 @@ SceneOnGrid put_on_grid(Scene scene, Progress& progress) {
   return {std::move(scene), std::move(medium), features};
 }
 
-LightSolution solve_light(cl::Session& session, const SceneOnGrid& in, Progress& progress) {
+LightSolution solve_light(cl::Session& session, const SceneOnGrid& in, const SolverSettings& settings,
+                          Progress& progress) {
   const auto solver = make_solver({.session = session,
                                    .progress = progress,
-                                   .settings = in.scene.solver,
+                                   .settings = settings,
                                    .features = in.features,
                                    .description = in.scene.medium,
                                    .surroundings = in.scene.surroundings});
@@ -30,18 +31,22 @@ LightSolution solve_light(cl::Session& session, const SceneOnGrid& in, Progress&
   return solution;
 }
 
+LightSolution solve_light(cl::Session& session, const SceneOnGrid& in, Progress& progress) {
+  return solve_light(session, in, in.scene.solver, progress);
+}
+
 ViewImage look_at(cl::Session& session, const SceneOnGrid& in, const LightSolution& solution, const Camera& camera,
                   Progress& progress) {
   if (!in.scene.has_camera) throw std::invalid_argument("look_at: the scene has no camera");
   ViewImage image = render_view(session,
-                     {.description = in.scene.medium,
-                      .medium = in.medium,
-                      .features = in.features,
-                      .solution = solution,
-                      .lights = in.scene.lights,
-                      .surroundings = in.scene.surroundings,
-                      .settings = in.scene.view},
-                     camera, progress);
+                                {.description = in.scene.medium,
+                                 .medium = in.medium,
+                                 .features = in.features,
+                                 .solution = solution,
+                                 .lights = in.scene.lights,
+                                 .surroundings = in.scene.surroundings,
+                                 .settings = in.scene.view},
+                                camera, progress);
   progress.finish();
   return image;
 }

@@ -31,6 +31,8 @@ struct SceneOnGrid {
 SceneOnGrid put_on_grid(Scene, Progress&);
 /// The stages of the solver that the scene names.
 LightSolution solve_light(cl::Session&, const SceneOnGrid&, Progress&);
+/// By other settings than the scene's.
+LightSolution solve_light(cl::Session&, const SceneOnGrid&, const SolverSettings&, Progress&);
 /// Stage "view"; the scene has a camera, or throws std::invalid_argument.
 ViewImage look_at(cl::Session&, const SceneOnGrid&, const LightSolution&, Progress&);
 /// Through another camera than the scene's.

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// See companion_run.h.
+#include "host/study/companion_run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/study/photon_reference.h"
+
+namespace turbid {
+namespace {
+
+constexpr float kTolerance = 1e-3f;  // of its solve: far below the difference that is looked for
+constexpr int kSmallPicture = 96;    // pixels of the small pictures' longest side
+constexpr std::size_t kEnoughValues = 3 * 64;
+constexpr int kProbeSteps = 4096;            // of one photon: bounds the probe's time where light is trapped
+constexpr std::uint64_t kProbeSeed = 77777;  // beside the run's own
+
+/// The same view in a few pixels of one sample each.
+Camera small_picture(Camera camera) {
+  const float scale = std::min(1.0f, float(kSmallPicture) / float(std::max(camera.width, camera.height)));
+  camera.width = std::max(1, static_cast<int>(std::lround(scale * float(camera.width))));
+  camera.height = std::max(1, static_cast<int>(std::lround(scale * float(camera.height))));
+  camera.samples = 1;
+  return camera;
+}
+
+/// R, G, B of the light that comes from surfaces.
+std::vector<float> surface_values(const ViewImage& image) {
+  std::vector<float> values;
+  values.reserve(3 * image.direct.size());
+  for (const glm::vec3& pixel : image.direct) values.insert(values.end(), {pixel.x, pixel.y, pixel.z});
+  return values;
+}
+
+}  // namespace
+
+CompanionRun::CompanionRun(cl::Session& session, const SceneOnGrid& in, const LightSolution& solution,
+                           const SampledFluence& sampled, bool picture)
+    : session_(session), in_(in), sampled_(sampled) {
+  if (picture) {
+    camera_ = small_picture(in.scene.camera);
+    const ViewImage image = look_at(session, in, solution, camera_, quiet_);
+    picture_ = rgb_values(image);
+    scattered_ = root_relmse(surface_values(image), picture_);
+  }
+  std::optional<Scene> scene = coarser_scene(in.scene, 2);
+  if (!scene) return;
+  SolverSettings settings = in.scene.solver;
+  settings.solver = "steady";
+  settings.steady.tolerance = std::max(settings.steady.tolerance, kTolerance);
+  scene->solver = settings;
+  coarse_.emplace(put_on_grid(std::move(*scene), quiet_));
+  base_.emplace(answer(*coarse_, settings));
+  const auto values = common_values(base_->fluence, {&sampled_});
+  if (in.features.scattering && values[0].size() < kEnoughValues) {
+    base_.reset();
+    coarse_.reset();
+  }
+}
+
+CompanionRun::Answer CompanionRun::answer(const SceneOnGrid& grid, const SolverSettings& settings) const {
+  const LightSolution solution = solve_light(session_, grid, settings, quiet_);
+  Answer result{sample_fluence(solution.volume, grid.medium), {}};
+  if (!picture_.empty()) result.picture = rgb_values(look_at(session_, grid, solution, camera_, quiet_));
+  return result;
+}
+
+std::optional<Difference> CompanionRun::coarser() const {
+  if (!base_) return std::nullopt;
+  const auto values = common_values(base_->fluence, {&sampled_});
+  return Difference{relative_l2(values[0], values[1]), root_relmse(base_->picture, picture_)};
+}
+
+std::optional<Difference> CompanionRun::with(const MarchSettings& march) const {
+  if (!base_) return std::nullopt;
+  SolverSettings settings = coarse_->scene.solver;
+  settings.march = march;
+  const Answer other = answer(*coarse_, settings);
+  const auto values = common_values(base_->fluence, {&other.fluence});
+  return Difference{relative_l2(values[1], values[0]), root_relmse(other.picture, base_->picture)};
+}
+
+Difference CompanionRun::from_transport(double photons) const {
+  const SceneOnGrid& grid = coarse_ ? *coarse_ : in_;
+  SolverSettings settings = in_.scene.solver;
+  settings.solver = "photon";
+  settings.photon.photons = std::max<std::int64_t>(1, static_cast<std::int64_t>(photons / 2));
+  settings.photon.error = 0;
+  settings.photon.batches = 2;
+  settings.photon.max_steps = kProbeSteps;
+  settings.photon.checkpoint.clear();
+  settings.seed += kProbeSeed;
+  const Answer a = answer(grid, settings);
+  ++settings.seed;
+  const Answer b = answer(grid, settings);
+  // The fluence of the run itself, but the picture of the companion: the small pictures of two grids differ where their
+  // surfaces do, which is the grid's error and not that of diffusion.
+  const auto of_a = common_values(a.fluence, {&sampled_}, 0.5), of_b = common_values(b.fluence, {&sampled_}, 0.5);
+  return {errors_against(of_a[1], of_a[0], of_b[0]).rel_l2_bound(),
+          std::sqrt(errors_against(base_ ? base_->picture : picture_, a.picture, b.picture).relmse_bound())};
+}
+
+}  // namespace turbid

@@ -53,7 +53,8 @@ std::string choose(RenderOptions& options, const cl::DeviceChoice& choice, Progr
   cl::Session session(choice);
   const SceneOnGrid on_grid = put_on_grid(std::move(scene), quiet);
   const LightSolution solution = solve_light(session, on_grid, quiet);
-  const ErrorEstimate estimate = *estimate_error(session, on_grid, solution, true, quiet);
+  ViewPass view = view_of(session, on_grid, solution);
+  const ErrorEstimate estimate = *estimate_error(session, on_grid, solution, &view, quiet);
   const SolverSettings& used = on_grid.scene.solver;
   const glm::ivec3 voxels = on_grid.scene.medium.frame.voxels;
   const ChosenSettings chosen = choose_settings(*estimate.image,
@@ -90,8 +91,11 @@ void render(RenderOptions options) {
   progress.detail("device " + choice.device.label() + ": " + choice.reason);
   const LightSolution solution = solve_light(session, in, progress);
   for (const std::string& sentence : run_warnings(solution.report, in.scene.solver)) progress.warn(sentence);
-  const ViewImage image = look_at(session, in, solution, progress);
-  const std::optional<ErrorEstimate> error = estimate_error(session, in, solution, true, progress);
+  progress.stage("view");
+  ViewPass view = view_of(session, in, solution);
+  const ViewImage image = view.look(in.scene.camera, [&](double fraction) { progress.update(fraction); });
+  progress.finish();
+  const std::optional<ErrorEstimate> error = estimate_error(session, in, solution, &view, progress);
   if (!chosen.empty() && error && error->image->total() > *options.error)
     progress.warn("the picture's estimated error is " + number(error->image->total()) + ", more than the " +
                   number(*options.error) + " asked for; its parts are in the report");

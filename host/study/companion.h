@@ -10,8 +10,12 @@
 namespace turbid {
 
 /// The scene on voxels `times` as large that the finer ones divide; nothing if the domain can't be cut so: open axes
-/// grow to whole blocks where nothing fills the domain, others must hold whole blocks already.
+/// grow to whole blocks where nothing fills the domain and no body sticks out of it, others must hold whole blocks
+/// already.
 std::optional<Scene> coarser_scene(const Scene&, int times);
+/// The same, but with as many voxels as before where the domain can grow to them: kernels, which are compiled for a
+/// number of voxels, are at hand then. Blocks in which nothing is cost nothing.
+std::optional<Scene> coarser_scene_of_same_size(const Scene&, int times);
 /// The scene on voxels `times` as small over exactly the same domain.
 Scene finer_scene(const Scene&, int times);
 

@@ -18,9 +18,9 @@ struct Difference {
 
 class CompanionRun {
  public:
-  /// Computes the scene on voxels twice as large if the domain can be cut so and enough of them lie inside. `picture`:
-  /// looks at it too, in a few pixels. Keeps the references.
-  CompanionRun(cl::Session&, const SceneOnGrid&, const LightSolution&, const SampledFluence&, bool picture);
+  /// Computes the scene on voxels twice as large if the domain can be cut so and enough of them lie inside. `view`: of
+  /// the run itself, if pictures count too; all are looked at in a few pixels. Keeps the other references.
+  CompanionRun(cl::Session&, const SceneOnGrid&, const SampledFluence&, ViewPass* view);
 
   /// Root mean square share of the small picture that comes from inside media.
   double scattered() const { return scattered_; }
@@ -38,7 +38,7 @@ class CompanionRun {
     std::vector<float> picture;  ///< R, G, B; empty: none
   };
 
-  Answer answer(const SceneOnGrid&, const SolverSettings&) const;
+  Answer seen(const SceneOnGrid&, const LightSolution&) const;
 
   cl::Session& session_;
   const SceneOnGrid& in_;

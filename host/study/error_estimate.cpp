@@ -23,7 +23,7 @@ constexpr double kLongerSteps = 0.5;  // error / difference to steps twice as lo
 constexpr double kFewerRays = 0.35;   // error / difference to a quarter of the rays: .17 to .23
 constexpr double kViewSteps = 0.002;  // of the picture: 1e-4 to 8e-3 with steps of half a voxel
 constexpr double kModel = 1.2;        // error / difference to photons on voxels twice as large
-constexpr double kFewPhotons = 3000, kManyPhotons = 30000;  // of both runs together
+constexpr double kFewPhotons = 6000, kManyPhotons = 60000;  // of both runs together
 constexpr double kUnresolved = 4;  // grid part without a companion: over the mean chord in voxels
 
 /// sqrt of the share of the first flight in the squared total fluence; 1 where nothing scatters.
@@ -51,7 +51,7 @@ double photon_error(const FluenceVolume& solution, const SampledFluence& sampled
 }  // namespace
 
 std::optional<ErrorEstimate> estimate_error(cl::Session& session, const SceneOnGrid& in, const LightSolution& solution,
-                                            bool picture, Progress& progress) {
+                                            ViewPass* view, Progress& progress) {
   const SolverSettings& settings = in.scene.solver;
   if (settings.error_estimate == EstimateEffort::off) return std::nullopt;
   const double started = wall_time();
@@ -67,7 +67,7 @@ std::optional<ErrorEstimate> estimate_error(cl::Session& session, const SceneOnG
     const bool diffuses = solution.report.active_voxels > 0;
     const double first = first_flight_share(solution.volume, sampled);
     const double step = settings.march.step_in_voxels / 0.5, rays = settings.march.rays_per_face / 4;
-    const CompanionRun companion(session, in, solution, sampled, picture);
+    const CompanionRun companion(session, in, sampled, view);
     const double scattered = companion.scattered();
     fluence.steps = kSteps * first * step * step;
     fluence.rays = kRays * first / rays;
@@ -104,7 +104,7 @@ std::optional<ErrorEstimate> estimate_error(cl::Session& session, const SceneOnG
       estimate.basis += ", and runs with fewer rays and with longer steps";
     }
   }
-  if (picture) estimate.image = image;
+  if (view) estimate.image = image;
   estimate.seconds = wall_time() - started;
   progress.finish();
   return estimate;

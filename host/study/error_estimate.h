@@ -30,9 +30,9 @@ struct ErrorEstimate {
   double seconds = 0;               ///< what the estimate took [s]
 };
 
-/// By the effort that the scene's [solver] error_estimate asks for; nothing if that is "off". `picture`: of that size
-/// and view, too. Stage "estimate".
-std::optional<ErrorEstimate> estimate_error(cl::Session&, const SceneOnGrid&, const LightSolution&, bool picture,
+/// By the effort that the scene's [solver] error_estimate asks for; nothing if that is "off". `view`: of the solution,
+/// if the error of the picture is wanted too; else null. Stage "estimate".
+std::optional<ErrorEstimate> estimate_error(cl::Session&, const SceneOnGrid&, const LightSolution&, ViewPass* view,
                                             Progress&);
 
 }  // namespace turbid

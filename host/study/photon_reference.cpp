@@ -58,7 +58,13 @@ std::vector<float> mean_values(const std::vector<float>& a, const std::vector<fl
 }
 
 ReferenceErrors errors_against(const std::vector<float>& x, const std::vector<float>& a, const std::vector<float>& b) {
-  if (x.size() != a.size() || x.size() != b.size()) throw std::invalid_argument("errors_against: lists differ");
+  return errors_against(x, a, b, mean_values(a, b));
+}
+
+ReferenceErrors errors_against(const std::vector<float>& x, const std::vector<float>& a, const std::vector<float>& b,
+                               const std::vector<float>& exact) {
+  if (x.size() != a.size() || x.size() != b.size() || x.size() != exact.size())
+    throw std::invalid_argument("errors_against: lists differ");
   ReferenceErrors errors;
   errors.values = x.size();
   double absolute = 0, sum = 0, squared = 0, difference = 0, spread = 0, scatter = 0, largest = 0;
@@ -78,8 +84,8 @@ ReferenceErrors errors_against(const std::vector<float>& x, const std::vector<fl
   const double floor = std::pow(0.1 * sum / static_cast<double>(x.size()), 2);
   double relative = 0, relative_spread = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const double m = 0.5 * (double(a[i]) + double(b[i]));
-    const double product = (double(x[i]) - a[i]) * (double(x[i]) - b[i]) / (m * m + floor);
+    const double product =
+        (double(x[i]) - a[i]) * (double(x[i]) - b[i]) / (double(exact[i]) * double(exact[i]) + floor);
     relative += product;
     relative_spread += product * product;
   }

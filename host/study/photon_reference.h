@@ -43,7 +43,10 @@ struct ReferenceErrors {
   double rel_l2_bound() const { return std::sqrt(rel_l2 * rel_l2 + 2 * rel_l2_spread); }
   double relmse_bound() const { return relmse + 2 * relmse_spread; }
 };
-/// Equally long lists.
+/// Equally long lists. `exact`: an estimate of it that relmse divides by, where the mean of a and b is too noisy for
+/// that: a pixel that no photon has reached would count as if it were black.
+ReferenceErrors errors_against(const std::vector<float>& x, const std::vector<float>& a, const std::vector<float>& b,
+                               const std::vector<float>& exact);
 ReferenceErrors errors_against(const std::vector<float>& x, const std::vector<float>& a, const std::vector<float>& b);
 
 /// On voxels that are active in all of them, see common_values: those of x, or x's averaged if it is finer.

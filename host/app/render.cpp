@@ -48,7 +48,7 @@ std::string choose(RenderOptions& options, const cl::DeviceChoice& choice, Progr
   if (!overrides.resolution) overrides.resolution = kProbeVoxels;
   Scene scene = read_scene(options.scene, overrides);
   if (!scene.has_camera || scene.solver.solver == "photon") return "";
-  scene.solver.error_estimate = EstimateEffort::quick;
+  scene.solver.error_estimate = EstimateEffort::full;  // what is chosen by it costs more than it
   Progress quiet(Verbosity::quiet);
   cl::Session session(choice);
   const SceneOnGrid on_grid = put_on_grid(std::move(scene), quiet);

@@ -23,7 +23,7 @@ constexpr double kLongerSteps = 0.5;  // error / difference to steps twice as lo
 constexpr double kFewerRays = 0.35;   // error / difference to a quarter of the rays: .17 to .23
 constexpr double kViewSteps = 0.002;  // of the picture: 1e-4 to 8e-3 with steps of half a voxel
 constexpr double kModel = 1.2;        // error / difference to photons on voxels twice as large
-constexpr double kFewPhotons = 6000, kManyPhotons = 60000;  // of both runs together
+constexpr double kFewPhotons = 4000, kManyPhotons = 40000;  // of both runs together
 constexpr double kUnresolved = 4;  // grid part without a companion: over the mean chord in voxels
 
 /// sqrt of the share of the first flight in the squared total fluence; 1 where nothing scatters.

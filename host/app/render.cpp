@@ -20,8 +20,7 @@
 namespace turbid::app {
 namespace {
 
-constexpr int kProbeVoxels = 48;                    // of the small run that --error chooses by
-constexpr std::int64_t kMostPhotons = 200'000'000;  // that --error may follow: some minutes
+constexpr int kProbeVoxels = 48;  // of the small run that --error chooses by
 
 struct RenderOptions : SceneOptions {
   std::string output;
@@ -57,7 +56,7 @@ std::string choose(RenderOptions& options, const cl::DeviceChoice& choice, Progr
   const ErrorEstimate estimate = *estimate_error(session, on_grid, solution, &view, quiet);
   const SolverSettings& used = on_grid.scene.solver;
   const glm::ivec3 voxels = on_grid.scene.medium.frame.voxels;
-  const ChosenSettings chosen = choose_settings(*estimate.image,
+  const ChosenSettings chosen = choose_settings(*estimate.image, estimate.scatter_of_one,
                                                 {std::max({voxels.x, voxels.y, voxels.z}), used.march.step_in_voxels,
                                                  used.march.rays_per_face, used.steady.tolerance},
                                                 *options.error);
@@ -67,8 +66,10 @@ std::string choose(RenderOptions& options, const cl::DeviceChoice& choice, Progr
   std::vector<std::string>& settings = options.overrides.settings;
   if (chosen.photon) {
     options.overrides.solver = "photon";
-    settings.push_back("solver.photon.photons=" + std::to_string(kMostPhotons));
-    return grid + "photons to a standard error of " + number(*options.error) + ": " + chosen.reason;
+    const auto photons = static_cast<std::int64_t>(chosen.photons);
+    settings.push_back("solver.photon.photons=" + std::to_string(photons));
+    settings.push_back("solver.photon.error=0");  // --error is the picture's, this would be the fluence's
+    return grid + number(chosen.photons) + " photons: " + chosen.reason;
   }
   settings.push_back("solver.march.step_in_voxels=" + number(chosen.with.step));
   settings.push_back("solver.march.rays_per_face=" + number(chosen.with.rays));

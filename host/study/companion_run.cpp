@@ -15,6 +15,7 @@ constexpr int kAround = 4;           // pixels to each side that a noisy picture
 constexpr int kSmallPicture = 64;    // pixels of the small pictures' longest side
 constexpr std::size_t kEnoughValues = 3 * 64;
 constexpr int kProbeSteps = 4096;            // of one photon: bounds the probe's time where light is trapped
+constexpr double kShorter = 16;              // times fewer photons than those of the run that it stands beside
 constexpr std::uint64_t kProbeSeed = 77777;  // beside the run's own
 
 /// The same view in a few pixels of one sample each.
@@ -53,7 +54,42 @@ std::vector<float> corrected(const std::vector<float>& own, const std::vector<fl
   return result;
 }
 
+/// sqrt(mean (a - b)^2 / (exact^2 + (0.1 mean exact)^2))
+double root_relmse_of(const std::vector<float>& a, const std::vector<float>& b, const std::vector<float>& exact) {
+  double sum = 0, relative = 0;
+  for (const float value : exact) sum += value;
+  const double floor = std::pow(0.1 * sum / static_cast<double>(exact.size()), 2);
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    const double d = double(a[i]) - double(b[i]), scale = double(exact[i]) * double(exact[i]) + floor;
+    if (scale > 0) relative += d * d / scale;
+  }
+  return std::sqrt(relative / static_cast<double>(exact.size()));
+}
+
+/// Settings of a short photon run.
+SolverSettings few_photons(SolverSettings settings, double photons) {
+  settings.solver = "photon";
+  settings.photon.photons = std::max<std::int64_t>(1, static_cast<std::int64_t>(photons));
+  settings.photon.error = 0;
+  settings.photon.batches = 2;
+  settings.photon.checkpoint.clear();
+  return settings;
+}
+
 }  // namespace
+
+double picture_scatter(cl::Session& session, const SceneOnGrid& in, const LightSolution& solution, ViewPass& of_it) {
+  Progress quiet(Verbosity::quiet);
+  const Camera camera = small_picture(in.scene.camera);
+  const SolverSettings settings =
+      few_photons(in.scene.solver, static_cast<double>(solution.report.photon->photons) / kShorter);
+  const LightSolution second =
+      std::move(solve_light(session, in, settings, {settings.seed + kProbeSeed}, quiet).front());
+  const std::vector<float> first = rgb_values(of_it.look(camera)),
+                           other = rgb_values(view_of(session, in, second).look(camera));
+  // Both scatter, the second sqrt(kShorter) times as much.
+  return root_relmse_of(first, other, first) / std::sqrt(1 + kShorter);
+}
 
 CompanionRun::CompanionRun(cl::Session& session, const SceneOnGrid& in, const SampledFluence& sampled, ViewPass* view)
     : session_(session), in_(in), sampled_(sampled) {
@@ -63,7 +99,7 @@ CompanionRun::CompanionRun(cl::Session& session, const SceneOnGrid& in, const Sa
     picture_ = rgb_values(image);
     scattered_ = root_relmse(surface_values(image), picture_);
   }
-  std::optional<Scene> scene = coarser_scene_of_same_size(in.scene, 2);
+  std::optional<Scene> scene = coarser_scene_of_same_size(in.scene, kTimes);
   if (!scene) return;
   SolverSettings& settings = scene->solver;
   settings.solver = "steady";
@@ -98,26 +134,23 @@ std::optional<Difference> CompanionRun::with(const MarchSettings& march) const {
   return Difference{relative_l2(values[1], values[0]), root_relmse(other.picture, base_->picture)};
 }
 
-Difference CompanionRun::from_transport(double photons) const {
+CompanionRun::Transport CompanionRun::from_transport(double photons) const {
   const SceneOnGrid& grid = coarse_ ? *coarse_ : in_;
-  SolverSettings settings = in_.scene.solver;
-  settings.solver = "photon";
-  settings.photon.photons = std::max<std::int64_t>(1, static_cast<std::int64_t>(photons / 2));
-  settings.photon.error = 0;
-  settings.photon.batches = 2;
+  SolverSettings settings = few_photons(in_.scene.solver, photons / 2);
   settings.photon.max_steps = kProbeSteps;
-  settings.photon.checkpoint.clear();
   const std::uint64_t seed = settings.seed + kProbeSeed;
   const std::vector<LightSolution> two = solve_light(session_, grid, settings, {seed, seed + 1}, quiet_);
   const Answer a = seen(grid, two[0]), b = seen(grid, two[1]);
   // The fluence of the run itself, but the picture of the companion: the small pictures of two grids differ where their
   // surfaces do, which is the grid's error and not that of diffusion.
   const auto of_a = common_values(a.fluence, {&sampled_}, 0.5), of_b = common_values(b.fluence, {&sampled_}, 0.5);
-  Difference result{errors_against(of_a[1], of_a[0], of_b[0]).rel_l2_bound(), 0};
+  Transport result;
+  result.apart.fluence = errors_against(of_a[1], of_a[0], of_b[0]).rel_l2_bound();
   if (!picture_.empty()) {
     const std::vector<float>& own = base_ ? base_->picture : picture_;
     const std::vector<float> exact = corrected(own, mean_values(a.picture, b.picture), camera_.width, camera_.height);
-    result.image = std::sqrt(errors_against(own, a.picture, b.picture, exact).relmse_bound());
+    result.apart.image = std::sqrt(errors_against(own, a.picture, b.picture, exact).relmse_bound());
+    result.picture_scatter = 0.5 * root_relmse_of(a.picture, b.picture, exact) * std::sqrt(photons);
   }
   return result;
 }

@@ -16,8 +16,13 @@ struct Difference {
   double image = 0;    ///< root_relmse of a small picture
 };
 
+/// What a photon run's picture scatters by, as the root of relMSE: from a second, short run beside it.
+double picture_scatter(cl::Session&, const SceneOnGrid&, const LightSolution&, ViewPass& of_it);
+
 class CompanionRun {
  public:
+  static constexpr int kTimes = 2;
+
   /// Computes the scene on voxels twice as large if the domain can be cut so and enough of them lie inside. `view`: of
   /// the run itself, if pictures count too; all are looked at in a few pixels. Keeps the other references.
   CompanionRun(cl::Session&, const SceneOnGrid&, const SampledFluence&, ViewPass* view);
@@ -30,7 +35,14 @@ class CompanionRun {
   std::optional<Difference> with(const MarchSettings&) const;
   /// How far the answers lie from radiative transfer in the same medium, by two runs of half the photons each, whose
   /// own scatter is taken out of the mean and put on top as two standard deviations: upper ends of what was measured.
-  Difference from_transport(double photons) const;
+  struct Transport {
+    Difference apart;            ///< of the run's fluence, and of the small pictures
+    double picture_scatter = 0;  ///< of a picture from one photon: that from N scatters by this / sqrt(N), on these
+                                 ///< voxels, and by more in smaller ones
+  };
+  Transport from_transport(double photons) const;
+  /// Edge of the voxels of its runs over that of the run itself.
+  int times_as_large() const { return coarse_ ? kTimes : 1; }
 
  private:
   struct Answer {

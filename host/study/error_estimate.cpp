@@ -22,7 +22,7 @@ constexpr double kRays = 0.04;        // of the first flight, with 4 rays per fa
 constexpr double kLongerSteps = 0.5;  // error / difference to steps twice as long: .22 to .27, 1/3 if it is the square
 constexpr double kFewerRays = 0.35;   // error / difference to a quarter of the rays: .17 to .23
 constexpr double kViewSteps = 0.002;  // of the picture: 1e-4 to 8e-3 with steps of half a voxel
-constexpr double kModel = 1.2;        // error / difference to photons on voxels twice as large
+constexpr double kScatter = 1.5;      // of a picture: a few bright photons that the second run may lack
 constexpr double kFewPhotons = 4000, kManyPhotons = 40000;  // of both runs together
 constexpr double kUnresolved = 4;  // grid part without a companion: over the mean chord in voxels
 
@@ -60,8 +60,9 @@ std::optional<ErrorEstimate> estimate_error(cl::Session& session, const SceneOnG
   ErrorEstimate estimate;
   ErrorParts &fluence = estimate.fluence, image;
   if (solution.report.photon) {
-    fluence.rays = image.rays = photon_error(solution.volume, sampled);
-    estimate.basis = "the photons' standard error";
+    fluence.rays = photon_error(solution.volume, sampled);
+    if (view) image.rays = kScatter * picture_scatter(session, in, solution, *view);
+    estimate.basis = "the photons' standard error alone";
   } else {
     const bool full = settings.error_estimate == EstimateEffort::full;
     const bool diffuses = solution.report.active_voxels > 0;
@@ -83,9 +84,11 @@ std::optional<ErrorEstimate> estimate_error(cl::Session& session, const SceneOnG
       estimate.basis = "the bodies' thickness in voxels: the domain can't be cut into voxels twice as large";
     }
     if (diffuses) {
-      const Difference transport = companion.from_transport(full ? kManyPhotons : kFewPhotons);
-      fluence.model = kModel * transport.fluence;
-      image.model = kModel * transport.image;
+      const auto transport = companion.from_transport(full ? kManyPhotons : kFewPhotons);
+      fluence.model = transport.apart.fluence;
+      image.model = transport.apart.image;
+      // A pixel gathers from the voxels of a column: their area decides.
+      estimate.scatter_of_one = transport.picture_scatter * companion.times_as_large();
       estimate.basis += ", and two runs of a few photons";
     }
     if (full) {

@@ -27,7 +27,9 @@ struct ErrorEstimate {
   ErrorParts fluence;
   std::optional<ErrorParts> image;  ///< if there is a picture
   std::string basis;                ///< one clause: where the grid's part comes from
-  double seconds = 0;               ///< what the estimate took [s]
+  double scatter_of_one = 0;  ///< a photon run's picture on these voxels would scatter by this / sqrt(photons); 0:
+                              ///< not measured
+  double seconds = 0;         ///< what the estimate took [s]
 };
 
 /// By the effort that the scene's [solver] error_estimate asks for; nothing if that is "off". `view`: of the solution,

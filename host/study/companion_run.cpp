@@ -97,7 +97,8 @@ CompanionRun::CompanionRun(cl::Session& session, const SceneOnGrid& in, const Sa
     camera_ = small_picture(in.scene.camera);
     const ViewImage image = view->look(camera_);
     picture_ = rgb_values(image);
-    scattered_ = root_relmse(surface_values(image), picture_);
+    direct_ = surface_values(image);
+    scattered_ = root_relmse(direct_, picture_);
   }
   std::optional<Scene> scene = coarser_scene_of_same_size(in.scene, kTimes);
   if (!scene) return;
@@ -114,15 +115,19 @@ CompanionRun::CompanionRun(cl::Session& session, const SceneOnGrid& in, const Sa
 }
 
 CompanionRun::Answer CompanionRun::seen(const SceneOnGrid& grid, const LightSolution& solution) const {
-  Answer result{sample_fluence(solution.volume, grid.medium), {}};
-  if (!picture_.empty()) result.picture = rgb_values(view_of(session_, grid, solution).look(camera_));
+  Answer result{sample_fluence(solution.volume, grid.medium), {}, {}};
+  if (picture_.empty()) return result;
+  const ViewImage image = view_of(session_, grid, solution).look(camera_);
+  result.picture = rgb_values(image);
+  result.direct = surface_values(image);
   return result;
 }
 
 std::optional<Difference> CompanionRun::coarser() const {
   if (!base_) return std::nullopt;
   const auto values = common_values(base_->fluence, {&sampled_});
-  return Difference{relative_l2(values[0], values[1]), root_relmse(base_->picture, picture_)};
+  return Difference{relative_l2(values[0], values[1]), root_relmse(base_->picture, picture_),
+                    root_relmse_of(base_->direct, direct_, picture_)};
 }
 
 std::optional<Difference> CompanionRun::with(const MarchSettings& march) const {
@@ -131,7 +136,7 @@ std::optional<Difference> CompanionRun::with(const MarchSettings& march) const {
   settings.march = march;
   const Answer other = seen(*coarse_, solve_light(session_, *coarse_, settings, {settings.seed}, quiet_).front());
   const auto values = common_values(base_->fluence, {&other.fluence});
-  return Difference{relative_l2(values[1], values[0]), root_relmse(other.picture, base_->picture)};
+  return Difference{relative_l2(values[1], values[0]), root_relmse(other.picture, base_->picture), 0};
 }
 
 CompanionRun::Transport CompanionRun::from_transport(double photons) const {

@@ -9,10 +9,12 @@
 #include "host/app/output.h"
 #include "host/base/errors.h"
 #include "host/report/converge_report.h"
+#include "host/report/estimate_report.h"
 #include "host/report/pareto_report.h"
 #include "host/report/report_context.h"
 #include "host/study/case.h"
 #include "host/study/refine_case.h"
+#include "host/study/trial_bodies.h"
 
 namespace turbid::app {
 namespace {
@@ -21,12 +23,19 @@ struct ConvergeOptions : SceneOptions {
   std::string over, reference = "auto", output, cache;
   std::vector<double> levels;
   int repeat = 1;
-  double photons = 4e6;
-  bool picture = false, pareto = false;
+  std::optional<double> photons;
+  bool picture = false, pareto = false, estimate = false;
   std::vector<std::string> subjects;
   std::string against;
   std::vector<double> aims;
 };
+
+constexpr double kPhotons = 4e6;       // of a reference, unless --photons says otherwise
+constexpr double kTrialPhotons = 2e5;  // of one of the 120 of --estimate
+
+double photons(const ConvergeOptions& options) {
+  return options.photons.value_or(options.estimate ? kTrialPhotons : kPhotons);
+}
 
 bool is_scene(const std::string& subject) {
   return std::filesystem::path(subject).extension() == ".toml";
@@ -51,7 +60,7 @@ std::vector<SceneRefinement> refine(cl::Session& session, Progress& progress, co
                           .repeat = options.repeat,
                           .picture = options.picture,
                           .against_photon = options.reference == "photon",
-                          .reference = {.photons = options.photons, .cache = options.cache}};
+                          .reference = {.photons = photons(options), .cache = options.cache}};
   if (settings.levels.empty()) {
     const glm::ivec3 voxels = read({}).medium.frame.voxels;
     const int longest = std::max({voxels.x, voxels.y, voxels.z}), first = std::max(8, longest / 32 * 8);
@@ -85,7 +94,7 @@ void weigh(const ConvergeOptions& options) {
   Progress progress(options.verbosity());
   cl::Session session(choice);
   const ParetoStudy study = pareto_study(session, scene,
-                                         {.reference = {.photons = options.photons, .cache = options.cache},
+                                         {.reference = {.photons = photons(options), .cache = options.cache},
                                           .picture = options.picture && scene.has_camera},
                                          [&](const std::string& run) { progress.stage(run); });
   progress.finish();
@@ -103,16 +112,46 @@ void compare_with_photons(const ConvergeOptions& options) {
   cl::Session session(choice);
   std::vector<AccuracyRow> rows;
   for (const Scene& scene : scenes)
-    for (AccuracyRow& row : accuracy_rows(session, scene, {.photons = options.photons, .cache = options.cache},
+    for (AccuracyRow& row : accuracy_rows(session, scene, {.photons = photons(options), .cache = options.cache},
                                           [&](const std::string& run) { progress.stage(run); }))
       rows.push_back(std::move(row));
   progress.finish();
   publish(accuracy_document(rows, report_context(command_line(), &choice.device)), options, "accuracy");
 }
 
+/// Estimates beside true errors: of scenes, or of all trial bodies.
+void try_estimates(const ConvergeOptions& options) {
+  std::vector<TrialGroup> groups;
+  std::vector<Scene> scenes;
+  for (const std::string& subject : options.subjects) scenes.push_back(read(options, subject));
+  const cl::DeviceChoice choice = cl::choose_device(options.device);
+  Progress progress(options.verbosity());
+  cl::Session session(choice);
+  const auto tried = [&](Scene scene) {
+    progress.stage(scene.name);
+    return try_estimate(session, std::move(scene), {.photons = photons(options), .cache = options.cache});
+  };
+  if (scenes.empty()) {
+    for (const TrialSet set : {TrialSet::calibration, TrialSet::held_out}) {
+      TrialGroup group{set == TrialSet::held_out ? "held out" : "calibration", set == TrialSet::held_out, {}};
+      for (TrialBody& body : trial_bodies(set)) group.trials.push_back(tried(std::move(body.scene)));
+      groups.push_back(std::move(group));
+    }
+  } else {
+    groups.push_back({"scenes", true, {}});
+    for (Scene& scene : scenes) groups[0].trials.push_back(tried(std::move(scene)));
+  }
+  progress.finish();
+  const Document document = estimate_document(groups, report_context(command_line(), &choice.device));
+  publish(document, options, "estimate");
+  if (verdict(document).failed > 0) throw VerificationError("the error estimate does not keep what is asked of it");
+}
+
 void converge(ConvergeOptions options) {
+  if (!(photons(options) >= 2 && photons(options) <= 1e12)) throw InputError("--photons: expected 2 to 1e12");
+  if (options.estimate) return try_estimates(options);
+  if (options.subjects.empty()) throw InputError("expected a case or a scene: see turbid converge --help");
   options.scene = options.subjects.front();
-  if (!(options.photons >= 2 && options.photons <= 1e12)) throw InputError("--photons: expected 2 to 1e12");
   if (!options.against.empty()) return compare_with_photons(options);
   if (options.subjects.size() > 1)
     throw InputError(options.subjects[1] + ": expected one case or scene (--against photon takes more)");
@@ -140,8 +179,11 @@ void converge(ConvergeOptions options) {
 void add_converge(CLI::App& program, Work& work) {
   const auto options = std::make_shared<ConvergeOptions>();
   CLI::App& command = *program.add_subcommand("converge", "Measure how the error of a case or scene falls by refining");
-  command.add_option("SUBJECT", options->subjects, "A scene (.toml), or a case of `turbid verify --list`")->required();
+  command.add_option("SUBJECT", options->subjects, "A scene (.toml), or a case of `turbid verify --list`");
   command.add_flag("--pareto", options->pareto, "Run a scene by many settings: error against time, and what to use");
+  command.add_flag("--estimate", options->estimate,
+                   "How well runs know their own error: estimates beside true errors, of the scenes given, or of 120 "
+                   "small bodies, half of which the estimate was calibrated on (some minutes)");
   command
       .add_option("--error", options->aims, "With --pareto: errors to recommend settings for (default: 0.05,0.02,0.01)")
       ->delimiter(',')
@@ -167,7 +209,8 @@ void add_converge(CLI::App& program, Work& work) {
                   "auto: the exact answer of a case, finer levels of a scene; photon: Monte Carlo, where the error of "
                   "diffusion itself shows as well")
       ->type_name("auto|photon");
-  command.add_option("--photons", options->photons, "Photons of that reference (default: 4e6)")->type_name("N");
+  command.add_option("--photons", options->photons, "Photons of that reference (default: 4e6; with --estimate 2e5)")
+      ->type_name("N");
   command.add_option("--cache", options->cache, "Folder that keeps the reference's photons for another time")
       ->type_name("DIR");
   command.add_option("--repeat", options->repeat, "Runs of each level; times are medians (default: 1)")->type_name("N");
@@ -187,7 +230,8 @@ void add_converge(CLI::App& program, Work& work) {
       "  turbid converge scenes/sphere.toml --over voxel_size --levels 24,48,96 --picture\n"
       "  turbid converge scenes/sphere.toml --pareto --resolution 64\n"
       "  turbid converge scenes/sphere.toml scenes/fog.toml --against photon --resolution 48\n"
-      "Status 1 if the observed order is less than expected.");
+      "  turbid converge --estimate\n"
+      "Status 1 if the observed order is less than expected, or estimates do not cover.");
   command.callback([options, &work] { work = [options] { converge(*options); }; });
 }
 

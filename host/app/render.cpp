@@ -20,8 +20,7 @@
 namespace turbid::app {
 namespace {
 
-constexpr int kProbeVoxels = 48;                    // of the small run that --error chooses by
-constexpr std::int64_t kMostPhotons = 200'000'000;  // that --error may follow: some minutes
+constexpr int kProbeVoxels = 48;  // of the small run that --error chooses by
 
 struct RenderOptions : SceneOptions {
   std::string output;
@@ -48,15 +47,16 @@ std::string choose(RenderOptions& options, const cl::DeviceChoice& choice, Progr
   if (!overrides.resolution) overrides.resolution = kProbeVoxels;
   Scene scene = read_scene(options.scene, overrides);
   if (!scene.has_camera || scene.solver.solver == "photon") return "";
-  scene.solver.error_estimate = EstimateEffort::quick;
+  scene.solver.error_estimate = EstimateEffort::full;  // what is chosen by it costs more than it
   Progress quiet(Verbosity::quiet);
   cl::Session session(choice);
   const SceneOnGrid on_grid = put_on_grid(std::move(scene), quiet);
   const LightSolution solution = solve_light(session, on_grid, quiet);
-  const ErrorEstimate estimate = *estimate_error(session, on_grid, solution, true, quiet);
+  ViewPass view = view_of(session, on_grid, solution);
+  const ErrorEstimate estimate = *estimate_error(session, on_grid, solution, &view, quiet);
   const SolverSettings& used = on_grid.scene.solver;
   const glm::ivec3 voxels = on_grid.scene.medium.frame.voxels;
-  const ChosenSettings chosen = choose_settings(*estimate.image,
+  const ChosenSettings chosen = choose_settings(*estimate.image, estimate.scatter_of_one,
                                                 {std::max({voxels.x, voxels.y, voxels.z}), used.march.step_in_voxels,
                                                  used.march.rays_per_face, used.steady.tolerance},
                                                 *options.error);
@@ -66,8 +66,10 @@ std::string choose(RenderOptions& options, const cl::DeviceChoice& choice, Progr
   std::vector<std::string>& settings = options.overrides.settings;
   if (chosen.photon) {
     options.overrides.solver = "photon";
-    settings.push_back("solver.photon.photons=" + std::to_string(kMostPhotons));
-    return grid + "photons to a standard error of " + number(*options.error) + ": " + chosen.reason;
+    const auto photons = static_cast<std::int64_t>(chosen.photons);
+    settings.push_back("solver.photon.photons=" + std::to_string(photons));
+    settings.push_back("solver.photon.error=0");  // --error is the picture's, this would be the fluence's
+    return grid + number(chosen.photons) + " photons: " + chosen.reason;
   }
   settings.push_back("solver.march.step_in_voxels=" + number(chosen.with.step));
   settings.push_back("solver.march.rays_per_face=" + number(chosen.with.rays));
@@ -90,8 +92,11 @@ void render(RenderOptions options) {
   progress.detail("device " + choice.device.label() + ": " + choice.reason);
   const LightSolution solution = solve_light(session, in, progress);
   for (const std::string& sentence : run_warnings(solution.report, in.scene.solver)) progress.warn(sentence);
-  const ViewImage image = look_at(session, in, solution, progress);
-  const std::optional<ErrorEstimate> error = estimate_error(session, in, solution, true, progress);
+  progress.stage("view");
+  ViewPass view = view_of(session, in, solution);
+  const ViewImage image = view.look(in.scene.camera, [&](double fraction) { progress.update(fraction); });
+  progress.finish();
+  const std::optional<ErrorEstimate> error = estimate_error(session, in, solution, &view, progress);
   if (!chosen.empty() && error && error->image->total() > *options.error)
     progress.warn("the picture's estimated error is " + number(error->image->total()) + ", more than the " +
                   number(*options.error) + " asked for; its parts are in the report");

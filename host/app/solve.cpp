@@ -27,7 +27,7 @@ void solve(const SolveOptions& options) {
   progress.detail("device " + choice.device.label() + ": " + choice.reason);
   const LightSolution solution = solve_light(session, in, progress);
   for (const std::string& sentence : run_warnings(solution.report, in.scene.solver)) progress.warn(sentence);
-  const std::optional<ErrorEstimate> error = estimate_error(session, in, solution, false, progress);
+  const std::optional<ErrorEstimate> error = estimate_error(session, in, solution, nullptr, progress);
   progress.stage("write");
   const FolderInUse folder(output.parent_path());
   write_fluence_vdb(solution.volume, in.medium, output.string(), in.scene.unit, error_metadata(error));

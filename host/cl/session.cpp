@@ -75,6 +75,17 @@ void Session::require_memory(std::size_t bytes) const {
 }
 
 Program Session::build(const std::string& file, const std::vector<Define>& defines) const {
+  std::ostringstream options;
+  options << "-cl-std=CL1.2 -cl-mad-enable -cl-no-signed-zeros -cl-kernel-arg-info";
+  for (const Define& define : defines) options << " -D" << define.name << "=" << define.value;
+  const auto shared = [&](const Program& program) {
+    check(clRetainProgram(program.get()), "keeping a program");
+    return Program(ProgramHandle(program.get()), file);
+  };
+  const std::lock_guard lock(built_->mutex);
+  const std::string key = file + " " + options.str();
+  if (const auto known = built_->programs.find(key); known != built_->programs.end()) return shared(known->second);
+
   const std::string source = kernel_source(file);
   const double started = wall_time();
   const char* pointer = source.c_str();
@@ -83,9 +94,6 @@ Program Session::build(const std::string& file, const std::vector<Define>& defin
   ProgramHandle handle(clCreateProgramWithSource(context(), 1, &pointer, &length, &status));
   check(status, file.c_str());
 
-  std::ostringstream options;
-  options << "-cl-std=CL1.2 -cl-mad-enable -cl-no-signed-zeros -cl-kernel-arg-info";
-  for (const Define& define : defines) options << " -D" << define.name << "=" << define.value;
   status = clBuildProgram(handle.get(), 1, &device_.device, options.str().c_str(), nullptr, nullptr);
   if (status != CL_SUCCESS) {
     std::size_t size = 0;
@@ -95,7 +103,7 @@ Program Session::build(const std::string& file, const std::vector<Define>& defin
     throw DeviceError(file + " does not build (" + options.str() + "): " + status_name(status) + "\n" + log);
   }
   if (recorder_->on()) recorder_->add(BuiltProgram{file, options.str(), {}, started, wall_time()});
-  return Program(std::move(handle), file);
+  return shared(built_->programs.emplace(key, Program(std::move(handle), file)).first->second);
 }
 
 }  // namespace turbid::cl

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A context on one device with its in-order queues; programs from kernel files; typed buffers and kernels.
 #pragma once
+#include <map>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -178,7 +180,8 @@ class Session {
   Queue& march_queue() { return *march_; }
   Queue& lattice_queue() { return *lattice_; }
 
-  /// Builds kernels/<file> with the given integers. Throws DeviceError with the compiler's log.
+  /// Builds kernels/<file> with the given integers, or takes what this session has built of them before. Throws
+  /// DeviceError with the compiler's log.
   Program build(const std::string& file, const std::vector<Define>& defines) const;
 
   template <class T>
@@ -265,6 +268,12 @@ class Session {
   }
 
  private:
+  /// Everything built so far, by file and options.
+  struct Built {
+    std::mutex mutex;
+    std::map<std::string, Program> programs;
+  };
+
   void require_memory(std::size_t bytes) const;
 
   DeviceInfo device_;
@@ -272,6 +281,7 @@ class Session {
   std::shared_ptr<MemoryCount> memory_ = std::make_shared<MemoryCount>();
   std::unique_ptr<Recorder> recorder_ = std::make_unique<Recorder>();
   std::unique_ptr<Queue> march_, lattice_;
+  std::unique_ptr<Built> built_ = std::make_unique<Built>();
 };
 
 }  // namespace turbid::cl

@@ -68,7 +68,11 @@ Table advice_table(const ParetoStudy& study, const std::vector<double>& aims) {
       const SettingRun& run = study.runs[*best];
       table.rows.push_back({{line("%g %%", 100 * aim), run.solver, run.setting, run.error, run.seconds}});
     } else {
-      table.rows.push_back({{line("%g %%", 100 * aim), "photon", line("--error %g", aim), aim, number(photons)}});
+      const double count = study.photons * photons / study.photon_seconds;
+      table.rows.push_back(
+          {{line("%g %%", 100 * aim), "photon",
+            study.photon_error > 0 ? line("%.0f photons", 1e3 * std::ceil(count / 1e3)) : std::string("photons"), aim,
+            number(photons)}});
     }
   }
   return table;

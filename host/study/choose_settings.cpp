@@ -29,12 +29,12 @@ ErrorParts predict(const ErrorParts& e, const Resolution& of, const Resolution& 
 
 }  // namespace
 
-ChosenSettings choose_settings(const ErrorParts& estimate, const Resolution& of, double aim) {
+ChosenSettings choose_settings(const ErrorParts& estimate, double scatter_of_one, const Resolution& of, double aim) {
   ChosenSettings chosen;
   const double left = aim - estimate.model;
   // Less than a quarter of the aim left would ask for a grid that costs more than photons do.
   chosen.photon = left < 0.25 * aim;
-  const double budget = chosen.photon ? 0.75 * aim : left;
+  const double budget = chosen.photon ? aim : left;
   const double voxels = of.voxels * std::pow(room(0.5 * budget, estimate.grid), -1 / kGridOrder);
   chosen.with.voxels = std::clamp(static_cast<int>(std::ceil(voxels / 8)) * 8, kLeastVoxels, kMostVoxels);
   chosen.with.step =
@@ -42,6 +42,8 @@ ChosenSettings choose_settings(const ErrorParts& estimate, const Resolution& of,
   chosen.with.rays = std::clamp(of.rays / float(room(0.1 * budget, estimate.rays)), kLeastRays, kMostRays);
   chosen.with.tolerance = std::clamp(float(0.1 * budget), 1e-6f, 0.01f);
   chosen.predicted = predict(estimate, of, chosen.with);
+  const double scatter = scatter_of_one * chosen.with.voxels / of.voxels;
+  chosen.photons = std::clamp(std::pow(scatter / (0.5 * aim), 2), kLeastPhotons, kMostPhotons);
   char text[256];
   if (chosen.photon)
     std::snprintf(text, sizeof text,

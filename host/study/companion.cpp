@@ -10,9 +10,36 @@
 namespace turbid {
 namespace {
 
-/// Nothing fills the domain outside the bodies, so that it may grow.
-bool empty_ambient(const Scene& scene) {
+/// Whether a larger domain would hold the same medium: nothing fills it outside the bodies, and they lie inside.
+bool can_grow(const Scene& scene) {
+  const GridFrame& frame = scene.medium.frame;
+  const glm::vec3 slack(0.01f * frame.voxel_size);
+  for (const Body& body : scene.medium.bodies)
+    for (const glm::vec3& p : body.solid.mesh.positions)
+      if (glm::any(glm::lessThan(p, frame.origin - slack)) || glm::any(glm::greaterThan(p, frame.upper() + slack)))
+        return false;
   return scene.medium.ambient_material < 0;
+}
+
+/// On so many voxels that are `times` as large; nothing if that is another domain.
+std::optional<Scene> on_larger_voxels(const Scene& scene, int times, glm::ivec3 voxels) {
+  const GridFrame& fine = scene.medium.frame;
+  GridFrame coarse = fine;
+  coarse.voxel_size = fine.voxel_size * float(times);
+  coarse.voxels = voxels;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int growth = voxels[axis] * times - fine.voxels[axis];
+    if (growth == 0) continue;
+    const auto face = static_cast<std::size_t>(2 * axis);
+    const bool lower_open = scene.medium.faces[face] == FaceBoundary::open,
+               upper_open = scene.medium.faces[face + 1] == FaceBoundary::open;
+    if (!can_grow(scene) || (!lower_open && !upper_open)) return std::nullopt;
+    // Towards the open end, by whole coarse voxels if that end is the lower one, so that voxels stay aligned.
+    if (!upper_open) coarse.origin[axis] -= float(growth) * fine.voxel_size;
+  }
+  Scene result = scene;
+  result.medium.frame = coarse;
+  return result;
 }
 
 /// Fine voxels per edge of a coarse one, and the coarse frame's origin in fine voxels.
@@ -45,24 +72,13 @@ std::size_t index_of(const FluenceVolume& volume, glm::ivec3 voxel) {
 }  // namespace
 
 std::optional<Scene> coarser_scene(const Scene& scene, int times) {
-  const GridFrame& fine = scene.medium.frame;
-  GridFrame coarse = fine;
-  coarse.voxel_size = fine.voxel_size * float(times);
-  for (int axis = 0; axis < 3; ++axis) {
-    const int unit = kBlockEdge * times, n = fine.voxels[axis];
-    coarse.voxels[axis] = (n + unit - 1) / unit * kBlockEdge;
-    const int growth = coarse.voxels[axis] * times - n;
-    if (growth == 0) continue;
-    const auto face = static_cast<std::size_t>(2 * axis);
-    const bool lower_open = scene.medium.faces[face] == FaceBoundary::open,
-               upper_open = scene.medium.faces[face + 1] == FaceBoundary::open;
-    if (!empty_ambient(scene) || (!lower_open && !upper_open)) return std::nullopt;
-    // Towards the open end, by whole coarse voxels if that end is the lower one, so that voxels stay aligned.
-    if (!upper_open) coarse.origin[axis] -= float(growth) * fine.voxel_size;
-  }
-  Scene result = scene;
-  result.medium.frame = coarse;
-  return result;
+  const glm::ivec3 unit(kBlockEdge * times);
+  return on_larger_voxels(scene, times, (scene.medium.frame.voxels + unit - 1) / unit * kBlockEdge);
+}
+
+std::optional<Scene> coarser_scene_of_same_size(const Scene& scene, int times) {
+  std::optional<Scene> same = on_larger_voxels(scene, times, scene.medium.frame.voxels);
+  return same ? same : coarser_scene(scene, times);
 }
 
 Scene finer_scene(const Scene& scene, int times) {
@@ -79,15 +95,12 @@ SampledFluence sample_fluence(const FluenceVolume& volume, const MediumVolume& m
 }
 
 std::vector<std::vector<float>> common_values(const SampledFluence& coarse,
-                                              const std::vector<const SampledFluence*>& fine) {
+                                              const std::vector<const SampledFluence*>& fine, double least_share) {
   std::vector<std::vector<float>> values(1 + fine.size());
   if (fine.empty()) return values;
   std::vector<Alignment> to_fine;
-  std::vector<std::vector<std::size_t>> at(fine.size());  // of the finer voxels of one coarse voxel, per grid
-  for (const SampledFluence* each : fine) {
-    to_fine.push_back(align(coarse.total.frame, each->total.frame));
-    at[to_fine.size() - 1].resize(static_cast<std::size_t>(std::pow(to_fine.back().times, 3) + 0.5));
-  }
+  std::vector<std::vector<std::size_t>> at(fine.size());  // of the active finer voxels of one coarse voxel, per grid
+  for (const SampledFluence* each : fine) to_fine.push_back(align(coarse.total.frame, each->total.frame));
   const std::size_t coarse_stride = coarse.total.colour_stride();
   for (int block = 0; block < coarse.total.blocks.count(); ++block)
     for (int v = 0; v < coarse.total.blocks.voxels_per_block(); ++v) {
@@ -97,13 +110,14 @@ std::vector<std::vector<float>> common_values(const SampledFluence& coarse,
                                glm::ivec3(v % kBlockEdge, v / kBlockEdge % kBlockEdge, v / (kBlockEdge * kBlockEdge));
       bool whole = true;
       for (std::size_t f = 0; f < fine.size() && whole; ++f) {
-        const int times = to_fine[f].times;
-        for (int child = 0; child < static_cast<int>(at[f].size()) && whole; ++child) {
+        const int times = to_fine[f].times, children = times * times * times;
+        at[f].clear();
+        for (int child = 0; child < children; ++child) {
           const glm::ivec3 within(child % times, child / times % times, child / (times * times));
           const std::size_t j = index_of(fine[f]->total, voxel * times + within + to_fine[f].shift);
-          whole = j != std::size_t(-1) && fine[f]->media[j].participates;
-          at[f][static_cast<std::size_t>(child)] = j;
+          if (j != std::size_t(-1) && fine[f]->media[j].participates) at[f].push_back(j);
         }
+        whole = !at[f].empty() && static_cast<double>(at[f].size()) >= least_share * children;
       }
       if (!whole) continue;
       for (std::size_t c = 0; c < 3; ++c) {

@@ -27,12 +27,14 @@ struct ErrorEstimate {
   ErrorParts fluence;
   std::optional<ErrorParts> image;  ///< if there is a picture
   std::string basis;                ///< one clause: where the grid's part comes from
-  double seconds = 0;               ///< what the estimate took [s]
+  double scatter_of_one = 0;  ///< a photon run's picture on these voxels would scatter by this / sqrt(photons); 0:
+                              ///< not measured
+  double seconds = 0;         ///< what the estimate took [s]
 };
 
-/// By the effort that the scene's [solver] error_estimate asks for; nothing if that is "off". `picture`: of that size
-/// and view, too. Stage "estimate".
-std::optional<ErrorEstimate> estimate_error(cl::Session&, const SceneOnGrid&, const LightSolution&, bool picture,
+/// By the effort that the scene's [solver] error_estimate asks for; nothing if that is "off". `view`: of the solution,
+/// if the error of the picture is wanted too; else null. Stage "estimate".
+std::optional<ErrorEstimate> estimate_error(cl::Session&, const SceneOnGrid&, const LightSolution&, ViewPass* view,
                                             Progress&);
 
 }  // namespace turbid

@@ -7,12 +7,15 @@
 namespace turbid {
 namespace {
 
+constexpr double kSameError = 0.01;
+
 bool usable(const SettingRun& run) {
   return std::isfinite(run.error) && std::isfinite(run.seconds) && run.error >= 0 && run.seconds >= 0;
 }
 
 bool dominates(const SettingRun& a, const SettingRun& b) {
-  return a.error <= b.error && a.seconds <= b.seconds && (a.error < b.error || a.seconds < b.seconds);
+  return (a.seconds < b.seconds && a.error <= (1 + kSameError) * b.error) ||
+         (a.seconds <= b.seconds && a.error < b.error);
 }
 
 }  // namespace

@@ -15,10 +15,11 @@ struct SettingRun {
   double picture_error = 0;  ///< root of relMSE; NaN without a picture
   double seconds = 0;
   std::uint64_t peak_memory = 0;  ///< [bytes]
-  bool efficient = false;         ///< no other run is both as fast and as accurate, and better in one of the two
+  bool efficient = false;         ///< see mark_efficient
 };
 
-/// Sets `efficient`. Of equal runs all are. A run whose error or time is not a positive number or zero is not.
+/// Sets `efficient`: no run is faster and as accurate to 1 %, which is more than such errors are known to, and none is
+/// as fast and more accurate. Of equal runs all are. A run whose error or time is not a positive number or zero is not.
 void mark_efficient(std::vector<SettingRun>&);
 /// Index of the fastest run whose error is at most `aim`; nothing if there is none.
 std::optional<std::size_t> recommended(const std::vector<SettingRun>&, double aim);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <set>
 
 namespace turbid {
 namespace {
@@ -70,8 +71,12 @@ ParetoStudy pareto_study(cl::Session& session, const Scene& scene, const ParetoS
   reference_settings.seed += 1000;  // not that of a run
   reference_settings.picture = settings.picture;
   const PhotonReference reference = photon_reference(session, scene, reference_settings);
+  std::set<std::string> compiled;
   for (const Scene& one : settings_of(scene)) {
     tell(one.solver.solver + " " + name_of(one));
+    // The first run on a grid compiles its kernels; later ones of this session, and of others, find them.
+    const std::string kernels = one.solver.solver + std::to_string(one.medium.frame.voxel_size);
+    if (one.solver.solver != "photon" && compiled.insert(kernels).second) run_scene(session, one, settings.picture);
     const SceneRun run = run_scene(session, one, settings.picture);
     const ReferenceErrors errors = fluence_errors(sample_fluence(run.solution.volume, run.on_grid.medium), reference);
     SettingRun row{.setting = name_of(one), .solver = one.solver.solver, .error = errors.rel_l2};
@@ -82,6 +87,7 @@ ParetoStudy pareto_study(cl::Session& session, const Scene& scene, const ParetoS
     if (one.solver.solver == "photon") {
       study.photon_error = errors.rel_l2;
       study.photon_seconds = run.seconds();
+      study.photons = static_cast<double>(one.solver.photon.photons);
     }
     study.runs.push_back(std::move(row));
   }

@@ -16,8 +16,9 @@ struct ParetoSettings {
 struct ParetoStudy {
   std::vector<SettingRun> runs;  ///< efficient ones marked
   double noise = 0;              ///< of the reference: errors below it are not resolved
-  double photon_error = 0;       ///< standard error of one photon run, relative L2, and
-  double photon_seconds = 0;     ///< its time: others follow by 1 / sqrt(time)
+  double photon_error = 0;       ///< scatter of one photon run, relative L2,
+  double photon_seconds = 0;     ///< its time: others follow by 1 / sqrt(time),
+  double photons = 0;            ///< and how many it followed
 };
 
 /// Voxels of the scene's size, twice and four times as large (where the domain can be cut so); few and many rays and

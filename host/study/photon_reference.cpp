@@ -16,6 +16,10 @@ namespace {
 /// costs seconds for a few of them.
 constexpr int kReferenceSteps = 1 << 16;
 
+/// What is added to the standard deviation of a sum over voxels or pixels because one photon crosses many of them:
+/// sqrt of how many fluctuate together.
+constexpr double kCorrelated = 2;
+
 SceneRun half(cl::Session& session, Scene scene, const ReferenceSettings& settings, int which, Verbosity talk) {
   PhotonSettings& photon = scene.solver.photon;
   scene.solver.solver = "photon";
@@ -54,10 +58,16 @@ std::vector<float> mean_values(const std::vector<float>& a, const std::vector<fl
 }
 
 ReferenceErrors errors_against(const std::vector<float>& x, const std::vector<float>& a, const std::vector<float>& b) {
-  if (x.size() != a.size() || x.size() != b.size()) throw std::invalid_argument("errors_against: lists differ");
+  return errors_against(x, a, b, mean_values(a, b));
+}
+
+ReferenceErrors errors_against(const std::vector<float>& x, const std::vector<float>& a, const std::vector<float>& b,
+                               const std::vector<float>& exact) {
+  if (x.size() != a.size() || x.size() != b.size() || x.size() != exact.size())
+    throw std::invalid_argument("errors_against: lists differ");
   ReferenceErrors errors;
   errors.values = x.size();
-  double absolute = 0, sum = 0, squared = 0, difference = 0, scatter = 0, largest = 0;
+  double absolute = 0, sum = 0, squared = 0, difference = 0, spread = 0, scatter = 0, largest = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double m = 0.5 * (double(a[i]) + double(b[i])), d = double(x[i]) - m;
     absolute += std::abs(d);
@@ -65,20 +75,26 @@ ReferenceErrors errors_against(const std::vector<float>& x, const std::vector<fl
     largest = std::max(largest, std::abs(m));
     errors.linf = std::max(errors.linf, std::abs(d));
     squared += double(a[i]) * double(b[i]);
-    difference += (double(x[i]) - a[i]) * (double(x[i]) - b[i]);
+    const double product = (double(x[i]) - a[i]) * (double(x[i]) - b[i]);
+    difference += product;
+    spread += product * product;
     scatter += 0.25 * (double(a[i]) - b[i]) * (double(a[i]) - b[i]);
   }
   if (!(sum > 0 && squared > 0)) return errors;
   const double floor = std::pow(0.1 * sum / static_cast<double>(x.size()), 2);
-  double relative = 0;
+  double relative = 0, relative_spread = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const double m = 0.5 * (double(a[i]) + double(b[i]));
-    relative += (double(x[i]) - a[i]) * (double(x[i]) - b[i]) / (m * m + floor);
+    const double product =
+        (double(x[i]) - a[i]) * (double(x[i]) - b[i]) / (double(exact[i]) * double(exact[i]) + floor);
+    relative += product;
+    relative_spread += product * product;
   }
   errors.rel_l1 = absolute / sum;
   errors.linf /= largest;
   errors.rel_l2 = std::sqrt(std::max(difference, 0.0) / squared);
   errors.relmse = std::max(relative, 0.0) / static_cast<double>(x.size());
+  errors.rel_l2_spread = kCorrelated * std::sqrt(spread) / squared;
+  errors.relmse_spread = kCorrelated * std::sqrt(relative_spread) / static_cast<double>(x.size());
   errors.noise = std::sqrt(scatter / squared);
   return errors;
 }

@@ -4,6 +4,7 @@
 // Two independent runs A and B of half the photons each: E[(x - A)(x - B)] = (x - exact)^2, so sums of that product
 // measure x alone, and |A - B| / 2 is what the mean of both scatters. Holds for any average over voxels or pixels.
 #pragma once
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -35,9 +36,17 @@ struct ReferenceErrors {
   double rel_l2 = 0;            ///< without scatter; 0 if it can't be told from scatter
   double relmse = 0;            ///< without scatter: mean (x - exact)^2 / (exact^2 + (0.1 mean exact)^2)
   double noise = 0;             ///< of the reference, as a rel_l2: what rel_l2 can't resolve
+  double rel_l2_spread = 0;     ///< standard deviation of rel_l2 squared, by what the products of (x - A)(x - B) spread
+  double relmse_spread = 0;     ///< standard deviation of relmse
   std::size_t values = 0;
+  /// Two standard deviations above what was measured.
+  double rel_l2_bound() const { return std::sqrt(rel_l2 * rel_l2 + 2 * rel_l2_spread); }
+  double relmse_bound() const { return relmse + 2 * relmse_spread; }
 };
-/// Equally long lists.
+/// Equally long lists. `exact`: an estimate of it that relmse divides by, where the mean of a and b is too noisy for
+/// that: a pixel that no photon has reached would count as if it were black.
+ReferenceErrors errors_against(const std::vector<float>& x, const std::vector<float>& a, const std::vector<float>& b,
+                               const std::vector<float>& exact);
 ReferenceErrors errors_against(const std::vector<float>& x, const std::vector<float>& a, const std::vector<float>& b);
 
 /// On voxels that are active in all of them, see common_values: those of x, or x's averaged if it is finer.

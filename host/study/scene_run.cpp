@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "host/base/memory.h"
-#include "host/view/view_pass.h"
 
 namespace turbid {
 
@@ -17,37 +16,47 @@ SceneOnGrid put_on_grid(Scene scene, Progress& progress) {
   return {std::move(scene), std::move(medium), features};
 }
 
-LightSolution solve_light(cl::Session& session, const SceneOnGrid& in, Progress& progress) {
+std::vector<LightSolution> solve_light(cl::Session& session, const SceneOnGrid& in, const SolverSettings& settings,
+                                       const std::vector<std::uint64_t>& seeds, Progress& progress) {
   const auto solver = make_solver({.session = session,
                                    .progress = progress,
-                                   .settings = in.scene.solver,
+                                   .settings = settings,
                                    .features = in.features,
                                    .description = in.scene.medium,
                                    .surroundings = in.scene.surroundings});
   solver->prepare(in.medium);
-  LightSolution solution = solver->light(in.scene.lights);
+  std::vector<LightSolution> solutions;
+  for (const std::uint64_t seed : seeds) {
+    solver->set_seed(seed);
+    solutions.push_back(solver->light(in.scene.lights));
+  }
   progress.finish();
-  return solution;
+  return solutions;
 }
 
-ViewImage look_at(cl::Session& session, const SceneOnGrid& in, const LightSolution& solution, const Camera& camera,
-                  Progress& progress) {
-  if (!in.scene.has_camera) throw std::invalid_argument("look_at: the scene has no camera");
-  ViewImage image = render_view(session,
-                     {.description = in.scene.medium,
-                      .medium = in.medium,
-                      .features = in.features,
-                      .solution = solution,
-                      .lights = in.scene.lights,
-                      .surroundings = in.scene.surroundings,
-                      .settings = in.scene.view},
-                     camera, progress);
-  progress.finish();
-  return image;
+LightSolution solve_light(cl::Session& session, const SceneOnGrid& in, Progress& progress) {
+  const SolverSettings& settings = in.scene.solver;
+  return std::move(solve_light(session, in, settings, {settings.seed}, progress).front());
+}
+
+ViewPass view_of(cl::Session& session, const SceneOnGrid& in, const LightSolution& solution) {
+  if (!in.scene.has_camera) throw std::invalid_argument("view_of: the scene has no camera");
+  return {session,
+          {.description = in.scene.medium,
+           .medium = in.medium,
+           .features = in.features,
+           .solution = solution,
+           .lights = in.scene.lights,
+           .surroundings = in.scene.surroundings,
+           .settings = in.scene.view}};
 }
 
 ViewImage look_at(cl::Session& session, const SceneOnGrid& in, const LightSolution& solution, Progress& progress) {
-  return look_at(session, in, solution, in.scene.camera, progress);
+  progress.stage("view");
+  ViewImage image =
+      view_of(session, in, solution).look(in.scene.camera, [&](double fraction) { progress.update(fraction); });
+  progress.finish();
+  return image;
 }
 
 double SceneRun::seconds() const {

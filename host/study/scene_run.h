@@ -12,7 +12,7 @@
 #include "host/scene/features.h"
 #include "host/scene/scene.h"
 #include "host/transport/solver.h"
-#include "host/view/image.h"
+#include "host/view/view_pass.h"
 #include "volumes/medium_volume.h"
 
 namespace turbid {
@@ -31,10 +31,14 @@ struct SceneOnGrid {
 SceneOnGrid put_on_grid(Scene, Progress&);
 /// The stages of the solver that the scene names.
 LightSolution solve_light(cl::Session&, const SceneOnGrid&, Progress&);
+/// By other settings than the scene's, once for each seed in place of theirs.
+std::vector<LightSolution> solve_light(cl::Session&, const SceneOnGrid&, const SolverSettings&,
+                                       const std::vector<std::uint64_t>& seeds, Progress&);
+/// Ready to be looked at through any camera; refers to its arguments. The scene has a camera, or throws
+/// std::invalid_argument.
+ViewPass view_of(cl::Session&, const SceneOnGrid&, const LightSolution&);
 /// Stage "view"; the scene has a camera, or throws std::invalid_argument.
 ViewImage look_at(cl::Session&, const SceneOnGrid&, const LightSolution&, Progress&);
-/// Through another camera than the scene's.
-ViewImage look_at(cl::Session&, const SceneOnGrid&, const LightSolution&, const Camera&, Progress&);
 
 /// One whole run with what it cost.
 struct SceneRun {

@@ -29,6 +29,7 @@ class MarchingSolver : public TransportSolver {
   explicit MarchingSolver(const SolverContext& context) : context_(context) {}
   void prepare(const MediumVolume&) final;
   LightSolution light(const LightList&) final;
+  void set_seed(std::uint64_t seed) final { context_.settings.seed = seed; }
 
   const DeviceMedium& device_medium() const { return *device_; }
   const DiffusionMedium& diffusion_medium() const { return *diffusion_; }

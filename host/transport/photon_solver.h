@@ -12,6 +12,7 @@ class PhotonSolver final : public TransportSolver {
   explicit PhotonSolver(const SolverContext& context) : context_(context) {}
   void prepare(const MediumVolume&) override;
   LightSolution light(const LightList&) override;
+  void set_seed(std::uint64_t seed) override { context_.settings.seed = seed; }
   /// The same for any sources.
   LightSolution follow(PhotonSources);
 

@@ -109,6 +109,9 @@ class TransportSolver {
   /// May be called often after one prepare.
   virtual LightSolution light(const LightList&) = 0;
 
+  /// Seed of what `light` computes from now on, in place of that of the settings.
+  virtual void set_seed(std::uint64_t seed) = 0;
+
   /// Whether `light` starts from the last answer where there is one: faster after a small change of the lights, to the same
   /// tolerance. By default every call starts afresh and gives the same bits whatever came before it. The photon solver, whose
   /// answers must be independent, starts afresh always.

@@ -44,7 +44,7 @@ TEST(Pareto, a_photon_run_to_half_the_error_takes_four_times_as_long) {
 
 TEST(ChooseSettings, meet_the_aim_by_the_scaling_of_each_part) {
   const ErrorParts at{.grid = 0.1, .steps = 0.004, .rays = 0.01, .solve = 1e-4, .model = 0.01};
-  const ChosenSettings chosen = choose_settings(at, {64, 0.5f, 4, 1e-4f}, 0.1);
+  const ChosenSettings chosen = choose_settings(at, 30, {64, 0.5f, 4, 1e-4f}, 0.1);
   EXPECT_FALSE(chosen.photon);
   EXPECT_LE(chosen.predicted.total(), 0.1);
   // No finer than needed: grid 0.1 -> 0.045 at order 1.5 asks for 64 (0.1/0.045)^(2/3) = 109 voxels, in whole blocks.
@@ -53,8 +53,8 @@ TEST(ChooseSettings, meet_the_aim_by_the_scaling_of_each_part) {
 
 TEST(ChooseSettings, cost_less_where_less_is_asked_for) {
   const ErrorParts at{.grid = 0.05, .steps = 0.01, .rays = 0.02, .solve = 1e-4, .model = 0.01};
-  const ChosenSettings loose = choose_settings(at, {64, 0.5f, 4, 1e-4f}, 0.3),
-                       tight = choose_settings(at, {64, 0.5f, 4, 1e-4f}, 0.05);
+  const ChosenSettings loose = choose_settings(at, 30, {64, 0.5f, 4, 1e-4f}, 0.3),
+                       tight = choose_settings(at, 30, {64, 0.5f, 4, 1e-4f}, 0.05);
   EXPECT_LT(loose.with.voxels, tight.with.voxels);
   EXPECT_LT(loose.with.rays, tight.with.rays);
   EXPECT_GT(loose.with.step, tight.with.step);
@@ -63,8 +63,8 @@ TEST(ChooseSettings, cost_less_where_less_is_asked_for) {
 
 TEST(ChooseSettings, are_photons_where_diffusion_itself_is_too_wrong) {
   const ErrorParts at{.grid = 0.01, .steps = 0.001, .rays = 0.001, .solve = 1e-4, .model = 0.12};
-  EXPECT_TRUE(choose_settings(at, {64, 0.5f, 4, 1e-4f}, 0.02).photon);
-  EXPECT_FALSE(choose_settings(at, {64, 0.5f, 4, 1e-4f}, 0.3).photon);
+  EXPECT_TRUE(choose_settings(at, 30, {64, 0.5f, 4, 1e-4f}, 0.02).photon);
+  EXPECT_FALSE(choose_settings(at, 30, {64, 0.5f, 4, 1e-4f}, 0.3).photon);
 }
 
 TEST(ReferenceErrors, take_the_scatter_of_the_reference_out) {

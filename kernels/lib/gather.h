@@ -3,8 +3,7 @@
 //     Tr j (1 - exp(-sigma_t ds)) / (sigma_t eta^2),    j = source / (4 pi)
 #ifndef TURBID_LIB_GATHER_H
 #define TURBID_LIB_GATHER_H
-#include "lib/attenuation.h"
-#include "lib/medium.h"
+#include "lib/packet.h"
 
 // Source of radiance 4 pi j at a point of a source tile [W/unit^2 per voxel]; none where there is no tile (tile < 0).
 static ALWAYS_INLINE Colour source_in(const global float* source_tiles, int tile, Cell cell) {
@@ -26,12 +25,36 @@ static ALWAYS_INLINE Colour source_in(const global float* source_tiles, int tile
 }
 
 // Adds what the segment sends towards the camera to `gathered` and takes what it swallows from `weight`.
-static ALWAYS_INLINE void gather(Colour* gathered, Colour* weight, Extinction sigma, Colour source, float length,
-                                 float eta_squared) {
+static void gather(Colour* gathered, Colour* weight, Extinction sigma, Colour source, float length, float eta_squared) {
   const Colour depth = (sigma.sigma_s + sigma.sigma_a) * length;
   const Colour share = *weight * mean_transmittance(depth);
   *gathered += share * source * (length * 0.25f * M_1_PI_F / eta_squared);
   *weight -= share * depth;
+}
+
+// The same for the rays in `gone` of a packet; the mask of those whose weight has fallen below `min_weight`.
+static ALWAYS_INLINE Ints gather_all(const Medium* medium, const Packet* p, const Strides* strides, Ints gone,
+                                     const global float* source_tiles, float min_weight, float* gathered, float* weight) {
+  const Extinctions sigma = extinctions_at(medium, p, strides);
+  float values[COLOUR_WIDTH * LANES];
+  for (int i = 0; i < LANES; ++i) {
+    put_colour(source_in(source_tiles, tile_in(medium, p->source_row[i], strides->block[i]), cell_of(strides, i)), i, values);
+  }
+  const Colours source = turn_colours(values);
+  Colours sum = load_colours(gathered), left = load_colours(weight);
+  const Floats length = gone ? strides->length : (Floats)(0.0f);
+  const Floats per_source = length * (0.25f * M_1_PI_F) / strides->eta_squared;
+  Floats heaviest = (Floats)(0.0f);
+  for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
+    const Floats depth = (sigma.sigma_s.channel[channel] + sigma.sigma_a.channel[channel]) * length;
+    const Floats share = left.channel[channel] * mean_transmittances(depth);
+    sum.channel[channel] += share * source.channel[channel] * per_source;
+    left.channel[channel] -= share * depth;
+    heaviest = greatest(heaviest, left.channel[channel]);
+  }
+  store_colours(sum, gathered);
+  store_colours(left, weight);
+  return gone & MASK(heaviest < min_weight);
 }
 
 #endif

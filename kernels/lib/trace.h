@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One step of a ray through the medium: straight where the index is constant, drift-kick-drift where it is graded, cut short
-// at the domain's faces and at the zero crossing of a body's signed distance. `advance` does any step; `glide` the many steps
-// on which nothing can happen, at a fraction of the cost.
+// at the domain's faces and at the zero crossing of a body's signed distance. `advance` does any step of one ray; packet.h has the
+// many steps on which nothing can happen, for several rays at a fraction of the cost.
 //
 // Ray equation in the parameter tau, dtau = ds / eta:              [Ihrke et al. 2007; Sharma et al. 1982]
 //     dx/dtau = v,   dv/dtau = grad(eta^2 / 2),   |v| = eta(x)
@@ -187,83 +187,6 @@ static Step advance(const Medium* medium, Ray* ray, float step_size, float room)
   ray->v = v;
   ray->grace -= step.length;
   return step;
-}
-
-// The block of cells around a ray, looked up once per visit, and the room left in it.
-typedef struct {
-  float3 corner;          // of the block's first node [voxels]
-  int block, region;      // looked up for these
-  int index_tile;         // < 0: no tile, as in the two below
-  int coefficient_tile;
-  int source_tile;
-  float dtau;             // of a whole step
-  float eta_squared;      // where there is no index tile
-  float room;             // arc length on which the ray meets no surface and no face of the domain as long as it is in the block
-  float least_room;       // that a glide needs; without bounds where one long segment is exact
-} Place;
-
-// Where the ray has come to with a step that left it `room`.
-static void look_around(const Medium* medium, const Ray* ray, float step_size, float room, Place* place) {
-  const float3 x = ray->x;
-  const Cell cell = locate(x);
-  const global RegionParams* region = medium->regions + ray->region;
-  if (cell.block != place->block || ray->region != place->region) {
-    place->block = cell.block;
-    place->region = ray->region;
-    const int bx = cell.block % BLOCKS_X, by = (cell.block / BLOCKS_X) % BLOCKS_Y, bz = cell.block / (BLOCKS_X * BLOCKS_Y);
-    place->corner = (float3)(8 * bx, 8 * by, 8 * bz) + 0.5f;
-    place->index_tile = region->index_set >= 0 ? tile_of(medium, region->index_set, cell.block) : -1;
-    place->coefficient_tile = region->coefficient_set >= 0 ? tile_of(medium, region->coefficient_set, cell.block) : -1;
-    place->source_tile = region->source_set >= 0 ? tile_of(medium, region->source_set, cell.block) : -1;
-  }
-  const bool exact = place->index_tile < 0 && region->source_set < 0 && region->coefficient_set < 0;
-  place->least_room = exact ? 1e30f : step_size;
-  place->eta_squared = dot(ray->v, ray->v);
-  place->dtau = step_size * (place->index_tile >= 0 ? region->tau_per_arc : rsqrt(place->eta_squared));
-  // The outermost half voxel has cells of its own kind: steps there are done with care.
-  const float3 wall = fmin(x, (float3)(TURBID_VOXELS_X, TURBID_VOXELS_Y, TURBID_VOXELS_Z) - x) - 0.5f;
-  place->room = fmin(room, fmin(wall.x, fmin(wall.y, wall.z)));
-}
-
-typedef struct {
-  Cell cell;          // of the point half way, in the place's block
-  float length;       // arc length done [voxels]
-  float eta_squared;  // half way
-} Stride;
-
-// One step within the room of a place, as `advance` would do it; false, with nothing done, where it may meet something.
-static ALWAYS_INLINE bool glide(const Medium* medium, Ray* ray, Place* place, float step_size, Stride* stride) {
-  if (place->room < place->least_room) return false;
-  const float dtau = place->dtau;
-  const float3 middle = ray->x + 0.5f * dtau * ray->v;
-  const float3 y = fmin(middle - place->corner, (float3)(7.9999f));
-  const int3 i = convert_int3(y);
-  Cell cell;
-  cell.block = place->block;
-  cell.node = i.x + TURBID_TILE_EDGE * (i.y + TURBID_TILE_EDGE * i.z);
-  cell.fraction = y - convert_float3(i);
-  float3 v = ray->v;
-#if TURBID_GRADED
-  if (place->index_tile >= 0) v += dtau * interpolate4(medium->index_tiles, place->index_tile, cell).xyz;
-#endif
-  const float3 to = middle + 0.5f * dtau * v;
-  const float3 off = fabs(to - place->corner - 4.0f);
-  if (fmax(off.x, fmax(off.y, off.z)) > 4.0f) return false;
-  stride->cell = cell;
-  stride->length = step_size;
-  stride->eta_squared = place->eta_squared;
-#if TURBID_GRADED
-  if (place->index_tile >= 0) {
-    const float3 mean = 0.5f * (ray->v + v);
-    stride->eta_squared = dot(mean, mean);
-    stride->length = dtau * sqrt(stride->eta_squared);
-  }
-#endif
-  ray->x = to;
-  ray->v = v;
-  ray->grace -= stride->length;
-  place->room -= stride->length;
-  return true;
 }
 
 // No reflection between two regions: their blurred indices join, or the indices agree to what sampling can tell (a graded index

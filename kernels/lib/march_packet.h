@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// A packet of light rays: what a step takes from all of them at once, and how single paths leave and join it.
+#ifndef TURBID_LIB_MARCH_PACKET_H
+#define TURBID_LIB_MARCH_PACKET_H
+#include "lib/march_path.h"
+
+typedef struct {
+  Packet rays;
+  float power[TURBID_CHANNELS][LANES], absorbed[TURBID_CHANNELS][LANES], deposited[TURBID_CHANNELS][LANES];
+  float floor_power[LANES];
+  int steps[LANES], steps_left[LANES];
+} Hot;
+
+static void take_path(const Hot* hot, int lane, Path* path) {
+  path->ray = take_ray(&hot->rays, lane);
+  path->room = room_around(&hot->rays, lane, path->ray.x);
+  path->power = lane_colour(hot->power, lane);
+  path->absorbed = lane_colour(hot->absorbed, lane);
+  path->deposited = lane_colour(hot->deposited, lane);
+  path->steps = hot->steps[lane];
+  path->steps_left = hot->steps_left[lane];
+}
+
+static void put_path(Hot* hot, int lane, const Path* path, const Medium* medium, float step_size) {
+  if (path->index < 0) {
+    clear_lane(&hot->rays, lane);
+    return;
+  }
+  put_ray(&hot->rays, lane, medium, &path->ray, step_size, path->room);
+  set_lane_colour(path->power, hot->power, lane);
+  set_lane_colour(path->absorbed, hot->absorbed, lane);
+  set_lane_colour(path->deposited, hot->deposited, lane);
+  hot->floor_power[lane] = path->floor_power;
+  hot->steps[lane] = path->steps;
+  hot->steps_left[lane] = path->steps_left;
+}
+
+// What the steps of the rays in `gone` take from them, as `attenuate` does; the mask of those left for `attenuate` itself: they
+// may end here, or lose so much that where on the step counts.
+static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, Sinks* sinks, const MarchParams* p,
+                                        const Strides* strides, Ints gone) {
+  const Extinctions sigma = extinctions_at(medium, &hot->rays, strides);
+  const Colours power = load_colours(hot->power[0]);
+  Colours scattered, absorbed;
+  Floats heaviest = (Floats)(0.0f), deepest = (Floats)(0.0f);
+  for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
+    const Floats sigma_s = sigma.sigma_s.channel[channel], sigma_a = sigma.sigma_a.channel[channel];
+    const Floats depth = (sigma_s + sigma_a) * strides->length;
+    const Floats share = power.channel[channel] * mean_transmittances(depth) * strides->length;
+    scattered.channel[channel] = sigma_s * share;
+    absorbed.channel[channel] = sigma_a * share;
+    heaviest = greatest(heaviest, power.channel[channel] - (scattered.channel[channel] + absorbed.channel[channel]));
+    deepest = greatest(deepest, depth);
+  }
+  Ints apart = gone & MASK(heaviest < LOAD(hot->floor_power));
+#if TURBID_SCATTERING
+  apart |= gone & MASK(deepest > THICK_STEP);
+#endif
+  const Ints here = gone & ~apart;
+#if TURBID_SCATTERING
+  int deposits[LANES], lost[LANES];
+  float units[TURBID_CHANNELS][LANES];
+  STORE(here, deposits);
+  store_colours(scattered, units[0]);
+  for (int i = 0; i < LANES; ++i) {
+    const int tile = tile_in(medium, hot->rays.source_row[i], strides->block[i]);
+    lost[i] = tile >> 31;
+    if (!deposits[i] || tile < 0) continue;
+    float3 direction = (float3)(0.0f);
+#if TURBID_FIRST_MOMENT
+    direction = normalize((float3)(hot->rays.v[0][i], hot->rays.v[1][i], hot->rays.v[2][i]));
+#endif
+    deposit(sinks, p, tile, cell_of(strides, i), lane_colour(units, i), direction);
+  }
+  const Ints absorbs = LOAD(lost);  // where no source can be left
+#else
+  const Ints absorbs = (Ints)(-1);
+#endif
+  for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
+    const Floats s = here ? scattered.channel[channel] : (Floats)(0.0f), a = here ? absorbed.channel[channel] : (Floats)(0.0f);
+    STORE(power.channel[channel] - (s + a), hot->power[channel]);
+    STORE(LOAD(hot->absorbed[channel]) + (a + (absorbs ? s : (Floats)(0.0f))), hot->absorbed[channel]);
+    STORE(LOAD(hot->deposited[channel]) + (absorbs ? (Floats)(0.0f) : s), hot->deposited[channel]);
+  }
+  return apart;
+}
+
+#endif

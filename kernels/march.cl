@@ -70,7 +70,7 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
   Path paths[LANES];
   Hot hot;
   Claim claim = {0, 0};
-  int done[LANES];
+  LANE_ARRAY int done[LANES];
   for (int i = 0; i < LANES; ++i) {
     paths[i].index = -1;
     done[i] = 0;
@@ -91,8 +91,8 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
     if (any_of(gone & LOAD(hot.rays.participates))) apart = attenuate_all(&hot, &medium, &sinks, &p, &strides, gone);
     const Ints waiting = (alive & ~gone) | apart;
     if (!any_of(waiting)) continue;
-    int waits[LANES], steps[LANES], attenuates[LANES];
-    float length[LANES];
+    LANE_ARRAY int waits[LANES], steps[LANES], attenuates[LANES];
+    LANE_ARRAY float length[LANES];
     STORE(waiting, waits);
     STORE(wanted, steps);
     STORE(apart, attenuates);

@@ -35,8 +35,8 @@ typedef struct {
 
 typedef struct {
   Packet rays;
-  float weight[TURBID_CHANNELS][LANES], gathered[TURBID_CHANNELS][LANES];
-  int steps[LANES];
+  LANE_ARRAY float weight[TURBID_CHANNELS][LANES], gathered[TURBID_CHANNELS][LANES];
+  LANE_ARRAY int steps[LANES];
 } Hot;
 
 // Takes a path out of the packet, and puts it back.
@@ -253,7 +253,7 @@ kernel void view(MEDIUM_ARGUMENTS, ViewParams p, const global ViewSample* sample
     }
     const Ints waiting = (alive & ~gone) | ended;
     if (!any_of(waiting)) continue;
-    int waits[LANES], ends[LANES];
+    LANE_ARRAY int waits[LANES], ends[LANES];
     STORE(waiting, waits);
     STORE(ended, ends);
     for (int i = 0; i < LANES; ++i) {

@@ -36,15 +36,15 @@ static void gather(Colour* gathered, Colour* weight, Extinction sigma, Colour so
 static ALWAYS_INLINE Ints gather_all(const Medium* medium, const Packet* p, const Strides* strides, Ints gone,
                                      const global float* source_tiles, float min_weight, float* gathered, float* weight) {
   const Extinctions sigma = extinctions_at(medium, p, strides);
-  float values[COLOUR_WIDTH * LANES];
-  for (int i = 0; i < LANES; ++i) {
-    put_colour(source_in(source_tiles, tile_in(medium, p->source_row[i], strides->block[i]), cell_of(strides, i)), i, values);
-  }
-  const Colours source = turn_colours(values);
+  Colours source;
+#define SOURCE(lane) source_in(source_tiles, tile_in(medium, p->source_row[lane], strides->block[lane]), cell_of(strides, lane))
+  COLLECT_COLOURS(source, SOURCE);
+#undef SOURCE
   Colours sum = load_colours(gathered), left = load_colours(weight);
   const Floats length = gone ? strides->length : (Floats)(0.0f);
   const Floats per_source = length * (0.25f * M_1_PI_F) / strides->eta_squared;
   Floats heaviest = (Floats)(0.0f);
+  UNROLL
   for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
     const Floats depth = (sigma.sigma_s.channel[channel] + sigma.sigma_a.channel[channel]) * length;
     const Floats share = left.channel[channel] * mean_transmittances(depth);

@@ -10,12 +10,19 @@
 #endif
 #define LANES TURBID_INTERLEAVE
 
+#define UNROLL _Pragma("unroll")
+
 // Masks are -1 where true.
 #if LANES == 16
 typedef float16 Floats;
 typedef int16 Ints;
-#define LOAD(array) vload16(0, array)
-#define STORE(value, array) vstore16(value, 0, array)
+typedef float16 Quads;  // of four lanes
+// One 64-byte access each: a load that took up several narrower stores would wait for them to reach the cache.
+#define LANE_ARRAY __attribute__((aligned(64)))
+static ALWAYS_INLINE Floats __attribute__((overloadable)) LOAD(const float* array) { return *(const Floats*)array; }
+static ALWAYS_INLINE Ints __attribute__((overloadable)) LOAD(const int* array) { return *(const Ints*)array; }
+static ALWAYS_INLINE void __attribute__((overloadable)) STORE(Floats value, float* array) { *(Floats*)array = value; }
+static ALWAYS_INLINE void __attribute__((overloadable)) STORE(Ints value, int* array) { *(Ints*)array = value; }
 #define MASK(condition) (condition)
 #define TO_INTS(value) __builtin_convertvector(value, int16)
 #define TO_FLOATS(value) __builtin_convertvector(value, float16)
@@ -24,28 +31,33 @@ static ALWAYS_INLINE bool any_of(Ints mask) {
   const long2 two = as_long2(eight.lo | eight.hi);
   return (two.x | two.y) != 0;
 }
-// Component k of four, for all lanes.
-static ALWAYS_INLINE Floats component0(const float* q) {
-  return (Floats)(vload16(0, q).s048c, vload16(1, q).s048c, vload16(2, q).s048c, vload16(3, q).s048c);
-}
-static ALWAYS_INLINE Floats component1(const float* q) {
-  return (Floats)(vload16(0, q).s159d, vload16(1, q).s159d, vload16(2, q).s159d, vload16(3, q).s159d);
-}
-static ALWAYS_INLINE Floats component2(const float* q) {
-  return (Floats)(vload16(0, q).s26ae, vload16(1, q).s26ae, vload16(2, q).s26ae, vload16(3, q).s26ae);
-}
+// Four numbers of each lane, which f(lane) gives, put together in registers: narrow stores would keep a wide load waiting.
+#define COLLECT4(q, f)                                                                       \
+  for (int k = 0; k < 4; ++k) q[k] = (float16)(f(4 * k), f(4 * k + 1), f(4 * k + 2), f(4 * k + 3))
+#define QUADS 4
+#define COMPONENT(q, s) (Floats)(q[0].s, q[1].s, q[2].s, q[3].s)
+#define COMPONENT0(q) COMPONENT(q, s048c)
+#define COMPONENT1(q) COMPONENT(q, s159d)
+#define COMPONENT2(q) COMPONENT(q, s26ae)
+#define COLLECT(lanes, f)                                                                    \
+  lanes = (Floats)(f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7), f(8), f(9), f(10), f(11), f(12), f(13), f(14), f(15))
 #elif LANES == 1
 typedef float Floats;
 typedef int Ints;
+typedef float4 Quads;
+#define LANE_ARRAY
 #define LOAD(array) (*(array))
 #define STORE(value, array) (*(array) = (value))
 #define MASK(condition) (-(condition))
 #define TO_INTS(value) ((int)(value))
 #define TO_FLOATS(value) ((float)(value))
 static ALWAYS_INLINE bool any_of(Ints mask) { return mask != 0; }
-static ALWAYS_INLINE Floats component0(const float* q) { return q[0]; }
-static ALWAYS_INLINE Floats component1(const float* q) { return q[1]; }
-static ALWAYS_INLINE Floats component2(const float* q) { return q[2]; }
+#define COLLECT4(q, f) q[0] = f(0)
+#define COLLECT(lanes, f) lanes = f(0)
+#define QUADS 1
+#define COMPONENT0(q) q[0].x
+#define COMPONENT1(q) q[0].y
+#define COMPONENT2(q) q[0].z
 #else
 #error "TURBID_INTERLEAVE must be 1 or 16"
 #endif

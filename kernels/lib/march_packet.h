@@ -6,9 +6,9 @@
 
 typedef struct {
   Packet rays;
-  float power[TURBID_CHANNELS][LANES], absorbed[TURBID_CHANNELS][LANES], deposited[TURBID_CHANNELS][LANES];
-  float floor_power[LANES];
-  int steps[LANES], steps_left[LANES];
+  LANE_ARRAY float power[TURBID_CHANNELS][LANES], absorbed[TURBID_CHANNELS][LANES], deposited[TURBID_CHANNELS][LANES];
+  LANE_ARRAY float floor_power[LANES];
+  LANE_ARRAY int steps[LANES], steps_left[LANES];
 } Hot;
 
 static void take_path(const Hot* hot, int lane, Path* path) {
@@ -43,6 +43,7 @@ static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, Sinks* s
   const Colours power = load_colours(hot->power[0]);
   Colours scattered, absorbed;
   Floats heaviest = (Floats)(0.0f), deepest = (Floats)(0.0f);
+  UNROLL
   for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
     const Floats sigma_s = sigma.sigma_s.channel[channel], sigma_a = sigma.sigma_a.channel[channel];
     const Floats depth = (sigma_s + sigma_a) * strides->length;
@@ -58,8 +59,8 @@ static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, Sinks* s
 #endif
   const Ints here = gone & ~apart;
 #if TURBID_SCATTERING
-  int deposits[LANES], lost[LANES];
-  float units[TURBID_CHANNELS][LANES];
+  LANE_ARRAY int deposits[LANES], lost[LANES];
+  LANE_ARRAY float units[TURBID_CHANNELS][LANES];
   STORE(here, deposits);
   store_colours(scattered, units[0]);
   for (int i = 0; i < LANES; ++i) {
@@ -76,6 +77,7 @@ static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, Sinks* s
 #else
   const Ints absorbs = (Ints)(-1);
 #endif
+  UNROLL
   for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
     const Floats s = here ? scattered.channel[channel] : (Floats)(0.0f), a = here ? absorbed.channel[channel] : (Floats)(0.0f);
     STORE(power.channel[channel] - (s + a), hot->power[channel]);

@@ -8,23 +8,23 @@
 #include "lib/trace.h"
 
 typedef struct {
-  float x[3][LANES], v[3][LANES];
-  float grace[LANES];
-  float dtau[LANES];      // of a whole step
-  float room[LANES];      // arc length on which the ray meets no surface within the block `room_block`
-  int room_block[LANES];
-  int region[LANES];      // < 0: there is no ray
+  LANE_ARRAY float x[3][LANES], v[3][LANES];
+  LANE_ARRAY float grace[LANES];
+  LANE_ARRAY float dtau[LANES];      // of a whole step
+  LANE_ARRAY float room[LANES];      // arc length on which the ray meets no surface within the block `room_block`
+  LANE_ARRAY int room_block[LANES];
+  LANE_ARRAY int region[LANES];      // < 0: there is no ray
   // Of the region:
-  int exact[LANES];       // mask: where its index is constant, one long segment is exact
-  int participates[LANES];  // mask: it attenuates or scatters
-  int index_row[LANES], coefficient_row[LANES], source_row[LANES];  // in the tile map; < 0: none
-  float sigma_s[TURBID_CHANNELS][LANES], sigma_a[TURBID_CHANNELS][LANES];
+  LANE_ARRAY int exact[LANES];       // mask: where its index is constant, one long segment is exact
+  LANE_ARRAY int participates[LANES];  // mask: it attenuates or scatters
+  LANE_ARRAY int index_row[LANES], coefficient_row[LANES], source_row[LANES];  // in the tile map; < 0: none
+  LANE_ARRAY float sigma_s[TURBID_CHANNELS][LANES], sigma_a[TURBID_CHANNELS][LANES];
 } Packet;
 
 // What the rays of a packet did in a step.
 typedef struct {
-  int block[LANES], node[LANES];  // the cell of the point half way
-  float fraction[3][LANES];       // in it
+  LANE_ARRAY int block[LANES], node[LANES];  // the cell of the point half way
+  LANE_ARRAY float fraction[3][LANES];       // in it
   Floats length, eta_squared;     // arc length done; index squared half way
 } Strides;
 
@@ -34,6 +34,7 @@ static void clear_lane(Packet* p, int lane) {
   p->index_row[lane] = p->coefficient_row[lane] = p->source_row[lane] = p->room_block[lane] = -1;
   for (int axis = 0; axis < 3; ++axis) p->x[axis][lane] = p->v[axis][lane] = 1.0f;
   p->grace[lane] = p->room[lane] = p->dtau[lane] = 0.0f;
+  UNROLL
   for (int channel = 0; channel < TURBID_CHANNELS; ++channel) p->sigma_s[channel][lane] = p->sigma_a[channel][lane] = 0.0f;
 }
 
@@ -54,6 +55,7 @@ static void put_ray(Packet* p, int lane, const Medium* medium, const Ray* ray, f
   p->coefficient_row[lane] = region->coefficient_set * BLOCKS;
   p->source_row[lane] = region->source_set * BLOCKS;
   const Colour sigma_s = colour_load4(region->sigma_s), sigma_a = colour_load4(region->sigma_a);
+  UNROLL
   for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
     p->sigma_s[channel][lane] = colour_channel(sigma_s, channel);
     p->sigma_a[channel][lane] = colour_channel(sigma_a, channel);
@@ -85,6 +87,19 @@ static ALWAYS_INLINE int tile_in(const Medium* medium, int row, int block) {
   return row >= 0 ? medium->tile_map[row + block] : -1;
 }
 
+// Force on a ray half way through its step.
+static ALWAYS_INLINE float4 force_on(const Medium* medium, const Packet* p, const Strides* strides, int lane) {
+  const int tile = tile_in(medium, p->index_row[lane], strides->block[lane]);
+  return tile >= 0 ? interpolate4(medium->index_tiles, tile, cell_of(strides, lane)) : (float4)(0.0f);
+}
+
+// Which of the rays in a mask are where a set has no tile.
+static Ints without_tile(const Medium* medium, const int* row, const Strides* strides, Ints mask) {
+  LANE_ARRAY int none[LANES];
+  for (int i = 0; i < LANES; ++i) none[i] = tile_in(medium, row[i], strides->block[i]) >> 31;
+  return mask & LOAD(none);
+}
+
 // One step of the rays in `wanted`; the mask of those that did it. `ground`: none is to pass this height in the ambient.
 static ALWAYS_INLINE Ints glide(const Medium* medium, Packet* p, Ints wanted, float step_size, bool has_ground, float ground,
                                 Strides* strides) {
@@ -98,18 +113,15 @@ static ALWAYS_INLINE Ints glide(const Medium* medium, Packet* p, Ints wanted, fl
   Ints going = wanted;
   Points v = v_before;
 #if TURBID_GRADED
-  float force[4 * LANES];
-  int no_tile[LANES];
-  for (int i = 0; i < LANES; ++i) {
-    const int tile = tile_in(medium, p->index_row[i], strides->block[i]);
-    no_tile[i] = tile >> 31;
-    vstore4(tile >= 0 ? interpolate4(medium->index_tiles, tile, cell_of(strides, i)) : (float4)(0.0f), i, force);
-  }
-  v = along(v, dtau, (Points){component0(force), component1(force), component2(force)});
+  Quads force[QUADS];
+#define FORCE(lane) force_on(medium, p, strides, lane)
+  COLLECT4(force, FORCE);
+#undef FORCE
+  v = along(v, dtau, (Points){COMPONENT0(force), COMPONENT1(force), COMPONENT2(force)});
   const Points mean = {0.5f * (v_before.x + v.x), 0.5f * (v_before.y + v.y), 0.5f * (v_before.z + v.z)};
   strides->eta_squared = squared_length(mean);
   strides->length = dtau * sqrt(strides->eta_squared);
-  going &= ~(LOAD(p->exact) & LOAD(no_tile));
+  if (any_of(going & LOAD(p->exact))) going &= ~without_tile(medium, p->index_row, strides, LOAD(p->exact));
 #else
   strides->eta_squared = squared_length(v);
   strides->length = (Floats)(step_size);
@@ -127,18 +139,20 @@ static ALWAYS_INLINE Ints glide(const Medium* medium, Packet* p, Ints wanted, fl
 #if TURBID_BODIES > 0
   // Whose is the point that the step leads to?
   const Ints block = locate_all(to).block, region = LOAD(p->region);
-  int blocks[LANES], owner[LANES];
+  LANE_ARRAY int blocks[LANES], foreign = 0;
   STORE(block, blocks);
-  for (int i = 0; i < LANES; ++i) owner[i] = medium->block_region[blocks[i]];
-  const Ints known = MASK(LOAD(owner) == region) | (MASK(block == LOAD(p->room_block)) & MASK(room >= 0.0f));
-  const Ints asking = going & ~known;
-  if (any_of(asking)) {
-    int go[LANES], ask[LANES];
-    float end[3][LANES];
+  for (int i = 0; i < LANES; ++i) foreign |= medium->block_region[blocks[i]] ^ p->region[i];
+  if (foreign) {
+    LANE_ARRAY int owner[LANES];
+    for (int i = 0; i < LANES; ++i) owner[i] = medium->block_region[blocks[i]];
+    const Ints known = MASK(LOAD(owner) == region) | (MASK(block == LOAD(p->room_block)) & MASK(room >= 0.0f));
+    const Ints asking = going & ~known;
+    LANE_ARRAY int go[LANES], ask[LANES];
+    LANE_ARRAY float end[3][LANES];
     STORE(going, go);
     STORE(asking, ask);
     store_points(to, end[0]);
-    for (int i = 0; i < LANES; ++i) {
+    for (int i = 0; any_of(asking) && i < LANES; ++i) {
       if (!ask[i]) continue;
       const int there = region_with_room(medium, locate((float3)(end[0][i], end[1][i], end[2][i])), &p->room[i]);
       p->room_block[i] = blocks[i];
@@ -172,10 +186,12 @@ typedef struct {
 
 static ALWAYS_INLINE Colours load_colours(const float* arrays) {
   Colours colours;
+  UNROLL
   for (int channel = 0; channel < TURBID_CHANNELS; ++channel) colours.channel[channel] = LOAD(arrays + LANES * channel);
   return colours;
 }
 static ALWAYS_INLINE void store_colours(Colours colours, float* arrays) {
+  UNROLL
   for (int channel = 0; channel < TURBID_CHANNELS; ++channel) STORE(colours.channel[channel], arrays + LANES * channel);
 }
 
@@ -189,20 +205,20 @@ static Colour lane_colour(const float (*arrays)[LANES], int lane) {
 }
 
 static void set_lane_colour(Colour value, float (*arrays)[LANES], int lane) {
+  UNROLL
   for (int channel = 0; channel < TURBID_CHANNELS; ++channel) arrays[channel][lane] = colour_channel(value, channel);
 }
 
-// Colours that stand lane by lane, four numbers each in three channels.
+// A colour of each lane, which f(lane) gives.
 #if TURBID_CHANNELS == 3
-#define COLOUR_WIDTH 4
-static ALWAYS_INLINE void put_colour(Colour value, int lane, float* values) { vstore4(value, lane, values); }
-static ALWAYS_INLINE Colours turn_colours(const float* values) {
-  return (Colours){{component0(values), component1(values), component2(values)}};
-}
+#define COLLECT_COLOURS(colours, f)                                                          \
+  {                                                                                          \
+    Quads quads[QUADS];                                                                      \
+    COLLECT4(quads, f);                                                                      \
+    colours = (Colours){{COMPONENT0(quads), COMPONENT1(quads), COMPONENT2(quads)}};         \
+  }
 #else
-#define COLOUR_WIDTH 1
-static ALWAYS_INLINE void put_colour(Colour value, int lane, float* values) { values[lane] = value; }
-static ALWAYS_INLINE Colours turn_colours(const float* values) { return (Colours){{LOAD(values)}}; }
+#define COLLECT_COLOURS(colours, f) COLLECT(colours.channel[0], f)
 #endif
 
 typedef struct {
@@ -212,14 +228,19 @@ typedef struct {
 // Half way through the rays' steps.
 static ALWAYS_INLINE Extinctions extinctions_at(const Medium* medium, const Packet* p, const Strides* strides) {
 #if TURBID_HETEROGENEOUS
-  float s[COLOUR_WIDTH * LANES], a[COLOUR_WIDTH * LANES];
+  Extinction each[LANES];
   for (int i = 0; i < LANES; ++i) {
     const int tile = tile_in(medium, p->coefficient_row[i], strides->block[i]);
-    const Extinction sigma = extinction_in(medium, max(p->region[i], 0), tile, cell_of(strides, i));
-    put_colour(sigma.sigma_s, i, s);
-    put_colour(sigma.sigma_a, i, a);
+    each[i] = extinction_in(medium, max(p->region[i], 0), tile, cell_of(strides, i));
   }
-  return (Extinctions){turn_colours(s), turn_colours(a)};
+  Extinctions result;
+#define SIGMA_S(lane) each[lane].sigma_s
+#define SIGMA_A(lane) each[lane].sigma_a
+  COLLECT_COLOURS(result.sigma_s, SIGMA_S);
+  COLLECT_COLOURS(result.sigma_a, SIGMA_A);
+#undef SIGMA_S
+#undef SIGMA_A
+  return result;
 #else
   return (Extinctions){load_colours(p->sigma_s[0]), load_colours(p->sigma_a[0])};
 #endif

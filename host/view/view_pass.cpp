@@ -4,9 +4,11 @@
 #include "host/view/view_pass.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "host/base/parallel.h"
 #include "host/transport/device_medium.h"
 #include "host/transport/light_rays.h"
 #include "host/view/source_tiles.h"
@@ -95,31 +97,38 @@ std::vector<LightParams> make_lights(const ViewInput& in, const VoxelSpace& spac
   return lights;
 }
 
-/// Box filter over a pixel's samples.
-void resolve(const Strip& strip, const std::vector<float>& radiance, int first_row, int last_row, int grid, ViewImage* image) {
-  const int width = image->width;
-  const float weight = 1.0f / static_cast<float>(grid * grid);
-  for (int y = first_row; y < last_row; ++y) {
-    for (int x = 0; x < width; ++x) {
-      glm::vec3 direct(0), scattered(0), normal(0);
-      float coverage = 0, depth = kFarAway;
-      for (int k = 0; k < grid * grid; ++k) {
-        const std::size_t i = static_cast<std::size_t>((y - first_row) * grid + k / grid) * (width * grid) + x * grid + k % grid;
-        direct += weight * glm::vec3(radiance[8 * i], radiance[8 * i + 1], radiance[8 * i + 2]);
-        scattered += weight * glm::vec3(radiance[8 * i + 4], radiance[8 * i + 5], radiance[8 * i + 6]);
-        normal += strip.normal[i];
-        coverage += weight * strip.coverage[i];
-        depth = std::min(depth, strip.depth[i]);
+/// Box filter over a pixel's samples. Returns the steps that were done.
+std::int64_t resolve(const Strip& strip, const std::vector<float>& radiance, int first_row, ViewImage* image) {
+  const float weight = 1.0f / static_cast<float>(strip.per_pixel);
+  std::atomic<std::int64_t> all_steps{0};
+  parallel_ranges(strip.rows, [&](int begin, int end) {
+    std::int64_t steps = 0;
+    for (int row = begin; row < end; ++row) {
+      for (int x = 0; x < strip.width; ++x) {
+        glm::vec3 direct(0), scattered(0), normal(0);
+        float coverage = 0, depth = kFarAway;
+        const std::size_t first = strip.index(x, row);
+        for (std::size_t i = first; i < first + strip.per_pixel; ++i) {
+          const float* at = radiance.data() + 8 * i;
+          direct += weight * glm::vec3(at[0], at[1], at[2]);
+          steps += static_cast<std::int64_t>(at[3]);
+          scattered += weight * glm::vec3(at[4], at[5], at[6]);
+          normal += strip.normal[i];
+          coverage += weight * strip.coverage[i];
+          depth = std::min(depth, strip.depth[i]);
+        }
+        const std::size_t pixel = static_cast<std::size_t>(first_row + row) * strip.width + x;
+        image->colour[pixel] = glm::vec4(direct + scattered, coverage);
+        image->direct[pixel] = direct;
+        image->scattered[pixel] = scattered;
+        image->depth[pixel] = depth;
+        const float length = glm::length(normal);
+        image->normal[pixel] = length > 1e-6f ? normal / length : glm::vec3(0);
       }
-      const std::size_t pixel = static_cast<std::size_t>(y) * width + x;
-      image->colour[pixel] = glm::vec4(direct + scattered, coverage);
-      image->direct[pixel] = direct;
-      image->scattered[pixel] = scattered;
-      image->depth[pixel] = depth;
-      const float length = glm::length(normal);
-      image->normal[pixel] = length > 1e-6f ? normal / length : glm::vec3(0);
     }
-  }
+    all_steps += steps;
+  });
+  return all_steps;
 }
 
 }  // namespace
@@ -181,7 +190,9 @@ ViewImage ViewPass::look(const Camera& camera, const std::function<void(double)>
   image.depth.resize(pixels);
   image.normal.resize(pixels);
   const int per_row = image.width * maker.grid() * maker.grid();
-  const int rows = std::clamp(kSamplesPerLaunch / per_row, 1, image.height);
+  // Whole squares of samples, if a launch has room for any.
+  int rows = std::clamp(kSamplesPerLaunch / per_row, 1, image.height);
+  if (rows > Strip::kSquare) rows -= rows % Strip::kSquare;
   cl::Buffer<ViewSample> samples = p.session.allocate<ViewSample>(static_cast<std::size_t>(rows) * per_row);
   cl::Buffer<float> radiance = p.session.allocate<float>(8 * static_cast<std::size_t>(rows) * per_row);
   cl::Buffer<int> claims = p.session.allocate<int>(1);
@@ -201,8 +212,7 @@ ViewImage ViewPass::look(const Camera& camera, const std::function<void(double)>
                      params, samples, claims, p.tiles, p.lights, p.depths, p.transmittance, p.ground, radiance);
     std::vector<float> values(8 * strip.samples.size());
     p.session.read(queue, radiance, std::span<float>(values));
-    resolve(strip, values, row, end, maker.grid(), &image);
-    for (std::size_t i = 0; i < strip.samples.size(); ++i) image.steps += static_cast<std::int64_t>(values[8 * i + 3]);
+    image.steps += resolve(strip, values, row, &image);
     if (progress) progress(static_cast<double>(end) / image.height);
   }
   return image;

@@ -61,7 +61,7 @@ static void begin_next(Path* path, Claim* claim, const Medium* medium, Sinks* si
 }
 
 // Work-items claim rays first_ray ... end_ray - 1 a few at a time until none is left; `claims` counts from 0 in each launch.
-kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, global RayState* next,
+kernel void march(MEDIUM_ARGUMENTS, const global int4* region_tiles, MarchParams p, const global RayState* rays, global RayState* next,
                   global int* next_count, global int* claims, global long* deposit, global long* flux,
                   global long* tallies, global long* ground, global int* ground_rays, global long* transmitted) {
   const Medium medium = MEDIUM_FROM_ARGUMENTS;
@@ -86,7 +86,7 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
     STORE(LOAD(hot.steps_left) + wanted, hot.steps_left);
     STORE(LOAD(done) - wanted, done);
     Strides strides;
-    const Ints gone = glide(&medium, &hot.rays, wanted, p.step, p.ground, p.ground_height, &strides);
+    const Ints gone = glide(&medium, region_tiles, &hot.rays, wanted, p.step, p.ground, p.ground_height, &strides);
     Ints apart = (Ints)(0);
     if (any_of(gone & LOAD(hot.rays.participates))) apart = attenuate_all(&hot, &medium, &sinks, &p, &strides, gone);
     const Ints waiting = (alive & ~gone) | apart;
@@ -103,8 +103,9 @@ kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, 
       take_path(&hot, i, path);
       if (attenuates[i]) {
         const Cell cell = cell_of(&strides, i);
+        const int set = medium.regions[path->ray.region].source_set;
         attenuate(path, &medium, &sinks, &p, extinction_at(&medium, path->ray.region, cell), length[i],
-                  tile_in(&medium, hot.rays.source_row[i], cell.block), cell);
+                  set >= 0 ? tile_of(&medium, set, cell.block) : -1, cell);
       } else if (steps[i]) {
         step_with_care(path, &medium, &sinks, &p, rays + path->index);
       } else if (path->steps >= p.max_steps) {

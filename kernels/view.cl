@@ -226,7 +226,7 @@ static void begin_next(Path* path, Claim* claim, const Medium* medium, const Sur
 }
 
 // Work-items claim samples a few at a time until none is left; `claims` counts from 0 in each launch.
-kernel void view(MEDIUM_ARGUMENTS, ViewParams p, const global ViewSample* samples, global int* claims,
+kernel void view(MEDIUM_ARGUMENTS, const global int4* region_tiles, ViewParams p, const global ViewSample* samples, global int* claims,
                  const global float* source_tiles, const global LightParams* lights, const global float* shadow_depths,
                  const global float* transmittance, const global float* ground_map, global float* radiance) {
   const Medium medium = MEDIUM_FROM_ARGUMENTS;
@@ -246,7 +246,7 @@ kernel void view(MEDIUM_ARGUMENTS, ViewParams p, const global ViewSample* sample
     const Ints wanted = alive & MASK(LOAD(hot.steps) < p.max_steps);
     STORE(LOAD(hot.steps) - wanted, hot.steps);  // a mask is -1
     Strides strides;
-    const Ints gone = glide(&medium, &hot.rays, wanted, p.step, p.ground, p.ground_height, &strides);
+    const Ints gone = glide(&medium, region_tiles, &hot.rays, wanted, p.step, p.ground, p.ground_height, &strides);
     Ints ended = alive & ~wanted;
     if (any_of(gone & LOAD(hot.rays.participates))) {
       ended |= gather_all(&medium, &hot.rays, &strides, gone, source_tiles, p.min_weight, hot.gathered[0], hot.weight[0]);

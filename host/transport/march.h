@@ -53,7 +53,7 @@ class March {
   MarchParams params_{};
   cl::Program program_;
   cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>,
-             cl::Buffer<float>, MarchParams, cl::Buffer<RayState>, cl::Buffer<RayState>, cl::Buffer<int>,
+             cl::Buffer<float>, cl::Buffer<int>, MarchParams, cl::Buffer<RayState>, cl::Buffer<RayState>, cl::Buffer<int>,
              cl::Buffer<int>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>,
              cl::Buffer<std::int64_t>, cl::Buffer<int>, cl::Buffer<std::int64_t>>
       kernel_;

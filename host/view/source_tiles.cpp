@@ -104,7 +104,8 @@ void extrapolate(Patch& patch) {
 
 std::vector<float> make_source_tiles(const FluenceVolume& volume, const MediumVolume& medium, const DeviceMedium& device) {
   const int channels = device.features.channels, width = channels == 3 ? 4 : 1;
-  std::vector<float> tiles(device.source_tiles.size() * TURBID_TILE_NODES * width, 0.0f);
+  // At least one: it stands in where rays find none.
+  std::vector<float> tiles(std::max<std::size_t>(device.source_tiles.size(), 1) * TURBID_TILE_NODES * width, 0.0f);
   parallel_ranges(static_cast<int>(device.source_tiles.size()), [&](int begin, int end) {
     Patch patch;
     for (int tile = begin; tile < end; ++tile) {

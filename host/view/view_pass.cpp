@@ -141,7 +141,7 @@ struct ViewPass::Prepared {
   EntrySurfaces surfaces;
   cl::Program program;
   cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>,
-             cl::Buffer<float>, ViewParams, cl::Buffer<ViewSample>, cl::Buffer<int>, cl::Buffer<float>,
+             cl::Buffer<float>, cl::Buffer<int>, ViewParams, cl::Buffer<ViewSample>, cl::Buffer<int>, cl::Buffer<float>,
              cl::Buffer<LightParams>, cl::Buffer<float>, cl::Buffer<float>, cl::Buffer<float>, cl::Buffer<float>>
       kernel;
   ViewParams params;
@@ -209,7 +209,7 @@ ViewImage ViewPass::look(const Camera& camera, const std::function<void(double)>
     const std::size_t items = cpu ? p.session.device().compute_units : strip.samples.size();
     p.kernel.enqueue(queue, {items}, {cpu ? std::size_t{1} : std::size_t{64}}, medium.regions_buffer, medium.tile_map_buffer,
                      medium.block_region_buffer, medium.distance_tiles, medium.index_tiles, medium.coefficient_tiles,
-                     params, samples, claims, p.tiles, p.lights, p.depths, p.transmittance, p.ground, radiance);
+                     medium.region_tiles, params, samples, claims, p.tiles, p.lights, p.depths, p.transmittance, p.ground, radiance);
     std::vector<float> values(8 * strip.samples.size());
     p.session.read(queue, radiance, std::span<float>(values));
     image.steps += resolve(strip, values, row, &image);

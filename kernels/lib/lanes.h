@@ -16,7 +16,8 @@
 #if LANES == 16
 typedef float16 Floats;
 typedef int16 Ints;
-typedef float16 Quads;  // of four lanes
+typedef float16 Quads;  // four numbers of four lanes
+typedef int16 QuadInts;
 // One 64-byte access each: a load that took up several narrower stores would wait for them to reach the cache.
 #define LANE_ARRAY __attribute__((aligned(64)))
 static ALWAYS_INLINE Floats __attribute__((overloadable)) LOAD(const float* array) { return *(const Floats*)array; }
@@ -32,19 +33,20 @@ static ALWAYS_INLINE bool any_of(Ints mask) {
   return (two.x | two.y) != 0;
 }
 // Four numbers of each lane, which f(lane) gives, put together in registers: narrow stores would keep a wide load waiting.
-#define COLLECT4(q, f)                                                                       \
-  for (int k = 0; k < 4; ++k) q[k] = (float16)(f(4 * k), f(4 * k + 1), f(4 * k + 2), f(4 * k + 3))
-#define QUADS 4
-#define COMPONENT(q, s) (Floats)(q[0].s, q[1].s, q[2].s, q[3].s)
-#define COMPONENT0(q) COMPONENT(q, s048c)
-#define COMPONENT1(q) COMPONENT(q, s159d)
-#define COMPONENT2(q) COMPONENT(q, s26ae)
-#define COLLECT(lanes, f)                                                                    \
-  lanes = (Floats)(f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7), f(8), f(9), f(10), f(11), f(12), f(13), f(14), f(15))
+#define LANE_QUADS 4
+#define COLLECT(q, f) \
+  for (int k = 0; k < LANE_QUADS; ++k) q[k] = (__typeof__(q[0]))(f(4 * k), f(4 * k + 1), f(4 * k + 2), f(4 * k + 3))
+// The first, second ... of the four numbers, for all lanes.
+#define COMPONENT(Type, q, s) (Type)(q[0].s, q[1].s, q[2].s, q[3].s)
+#define COMPONENT0(Type, q) COMPONENT(Type, q, s048c)
+#define COMPONENT1(Type, q) COMPONENT(Type, q, s159d)
+#define COMPONENT2(Type, q) COMPONENT(Type, q, s26ae)
+#define COMPONENT3(Type, q) COMPONENT(Type, q, s37bf)
 #elif LANES == 1
 typedef float Floats;
 typedef int Ints;
 typedef float4 Quads;
+typedef int4 QuadInts;
 #define LANE_ARRAY
 #define LOAD(array) (*(array))
 #define STORE(value, array) (*(array) = (value))
@@ -52,12 +54,12 @@ typedef float4 Quads;
 #define TO_INTS(value) ((int)(value))
 #define TO_FLOATS(value) ((float)(value))
 static ALWAYS_INLINE bool any_of(Ints mask) { return mask != 0; }
-#define COLLECT4(q, f) q[0] = f(0)
-#define COLLECT(lanes, f) lanes = f(0)
-#define QUADS 1
-#define COMPONENT0(q) q[0].x
-#define COMPONENT1(q) q[0].y
-#define COMPONENT2(q) q[0].z
+#define LANE_QUADS 1
+#define COLLECT(q, f) q[0] = f(0)
+#define COMPONENT0(Type, q) q[0].x
+#define COMPONENT1(Type, q) q[0].y
+#define COMPONENT2(Type, q) q[0].z
+#define COMPONENT3(Type, q) q[0].w
 #else
 #error "TURBID_INTERLEAVE must be 1 or 16"
 #endif
@@ -65,6 +67,8 @@ static ALWAYS_INLINE bool any_of(Ints mask) { return mask != 0; }
 // fmin and fmax would spend instructions on what is not a number.
 static ALWAYS_INLINE Floats least(Floats a, Floats b) { return a < b ? a : b; }
 static ALWAYS_INLINE Floats greatest(Floats a, Floats b) { return a > b ? a : b; }
+
+static ALWAYS_INLINE Ints not_negative(Ints a) { return a > 0 ? a : (Ints)(0); }
 
 typedef struct {
   Floats x, y, z;

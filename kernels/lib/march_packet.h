@@ -41,17 +41,20 @@ static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, Sinks* s
                                         const Strides* strides, Ints gone) {
   const Extinctions sigma = extinctions_at(medium, &hot->rays, strides);
   const Colours power = load_colours(hot->power[0]);
-  Colours scattered, absorbed;
+  Colours depth, scattered, absorbed;
+  UNROLL
+  for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
+    depth.channel[channel] = (sigma.sigma_s.channel[channel] + sigma.sigma_a.channel[channel]) * strides->length;
+  }
+  const Colours mean = mean_transmittances(depth);
   Floats heaviest = (Floats)(0.0f), deepest = (Floats)(0.0f);
   UNROLL
   for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
-    const Floats sigma_s = sigma.sigma_s.channel[channel], sigma_a = sigma.sigma_a.channel[channel];
-    const Floats depth = (sigma_s + sigma_a) * strides->length;
-    const Floats share = power.channel[channel] * mean_transmittances(depth) * strides->length;
-    scattered.channel[channel] = sigma_s * share;
-    absorbed.channel[channel] = sigma_a * share;
+    const Floats share = power.channel[channel] * mean.channel[channel] * strides->length;
+    scattered.channel[channel] = sigma.sigma_s.channel[channel] * share;
+    absorbed.channel[channel] = sigma.sigma_a.channel[channel] * share;
     heaviest = greatest(heaviest, power.channel[channel] - (scattered.channel[channel] + absorbed.channel[channel]));
-    deepest = greatest(deepest, depth);
+    deepest = greatest(deepest, depth.channel[channel]);
   }
   Ints apart = gone & MASK(heaviest < LOAD(hot->floor_power));
 #if TURBID_SCATTERING
@@ -59,21 +62,21 @@ static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, Sinks* s
 #endif
   const Ints here = gone & ~apart;
 #if TURBID_SCATTERING
-  LANE_ARRAY int deposits[LANES], lost[LANES];
-  LANE_ARRAY float units[TURBID_CHANNELS][LANES];
-  STORE(here, deposits);
-  store_colours(scattered, units[0]);
+  const Ints absorbs = strides->no_source;  // where no source can be left
+  const Ints leaves = here & ~absorbs;
+  LANE_ARRAY int deposits[LANES], tile[LANES];
+  LANE_ARRAY float left[TURBID_CHANNELS][LANES];
+  STORE(leaves, deposits);
+  STORE(strides->source_at, tile);
+  store_colours(scattered, left[0]);
   for (int i = 0; i < LANES; ++i) {
-    const int tile = tile_in(medium, hot->rays.source_row[i], strides->block[i]);
-    lost[i] = tile >> 31;
-    if (!deposits[i] || tile < 0) continue;
+    if (!deposits[i]) continue;
     float3 direction = (float3)(0.0f);
 #if TURBID_FIRST_MOMENT
     direction = normalize((float3)(hot->rays.v[0][i], hot->rays.v[1][i], hot->rays.v[2][i]));
 #endif
-    deposit(sinks, p, tile, cell_of(strides, i), lane_colour(units, i), direction);
+    deposit(sinks, p, tile[i] / TURBID_TILE_NODES, cell_of(strides, i), lane_colour(left, i), direction);
   }
-  const Ints absorbs = LOAD(lost);  // where no source can be left
 #else
   const Ints absorbs = (Ints)(-1);
 #endif

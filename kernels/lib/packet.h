@@ -17,21 +17,25 @@ typedef struct {
   // Of the region:
   LANE_ARRAY int exact[LANES];       // mask: where its index is constant, one long segment is exact
   LANE_ARRAY int participates[LANES];  // mask: it attenuates or scatters
-  LANE_ARRAY int index_row[LANES], coefficient_row[LANES], source_row[LANES];  // in the tile map; < 0: none
+  LANE_ARRAY int tile_row[LANES];  // where the region's blocks begin in `region_tiles`
   LANE_ARRAY float sigma_s[TURBID_CHANNELS][LANES], sigma_a[TURBID_CHANNELS][LANES];
 } Packet;
 
-// What the rays of a packet did in a step.
+// What the rays of a packet did in a step. `..._at`: first node of a tile; where there is none, `no_...` is masked and the first
+// tile of all stands in.
 typedef struct {
   LANE_ARRAY int block[LANES], node[LANES];  // the cell of the point half way
   LANE_ARRAY float fraction[3][LANES];       // in it
-  Floats length, eta_squared;     // arc length done; index squared half way
+  LANE_ARRAY float rows[4][LANES];           // trilinear weights of its four rows of corners along x
+  Ints coefficients_at, no_coefficients, source_at, no_source;
+  Floats length, eta_squared;                // arc length done; index squared half way
 } Strides;
 
 static void clear_lane(Packet* p, int lane) {
   p->region[lane] = -1;
   p->exact[lane] = p->participates[lane] = 0;
-  p->index_row[lane] = p->coefficient_row[lane] = p->source_row[lane] = p->room_block[lane] = -1;
+  p->room_block[lane] = -1;
+  p->tile_row[lane] = 0;
   for (int axis = 0; axis < 3; ++axis) p->x[axis][lane] = p->v[axis][lane] = 1.0f;
   p->grace[lane] = p->room[lane] = p->dtau[lane] = 0.0f;
   UNROLL
@@ -51,9 +55,7 @@ static void put_ray(Packet* p, int lane, const Medium* medium, const Ray* ray, f
   p->region[lane] = ray->region;
   p->exact[lane] = -(region->source_set < 0 && region->coefficient_set < 0);
   p->participates[lane] = -(region->source_set >= 0 || region->attenuates);
-  p->index_row[lane] = region->index_set * BLOCKS;
-  p->coefficient_row[lane] = region->coefficient_set * BLOCKS;
-  p->source_row[lane] = region->source_set * BLOCKS;
+  p->tile_row[lane] = ray->region * BLOCKS;
   const Colour sigma_s = colour_load4(region->sigma_s), sigma_a = colour_load4(region->sigma_a);
   UNROLL
   for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
@@ -83,45 +85,55 @@ static ALWAYS_INLINE Cell cell_of(const Strides* strides, int lane) {
   return cell;
 }
 
-static ALWAYS_INLINE int tile_in(const Medium* medium, int row, int block) {
-  return row >= 0 ? medium->tile_map[row + block] : -1;
-}
-
-// Force on a ray half way through its step.
-static ALWAYS_INLINE float4 force_on(const Medium* medium, const Packet* p, const Strides* strides, int lane) {
-  const int tile = tile_in(medium, p->index_row[lane], strides->block[lane]);
-  return tile >= 0 ? interpolate4(medium->index_tiles, tile, cell_of(strides, lane)) : (float4)(0.0f);
-}
-
-// Which of the rays in a mask are where a set has no tile.
-static Ints without_tile(const Medium* medium, const int* row, const Strides* strides, Ints mask) {
-  LANE_ARRAY int none[LANES];
-  for (int i = 0; i < LANES; ++i) none[i] = tile_in(medium, row[i], strides->block[i]) >> 31;
-  return mask & LOAD(none);
+// Trilinear value of four-wide nodes at a lane's point, `node` of the tiles being its cell's lowest corner.
+static ALWAYS_INLINE float4 value_at(const global float* tiles, int node, const Strides* strides, int lane) {
+  return weigh4(tiles + 4 * node, &strides->rows[0][lane], LANES, strides->fraction[0][lane]);
 }
 
 // One step of the rays in `wanted`; the mask of those that did it. `ground`: none is to pass this height in the ambient.
-static ALWAYS_INLINE Ints glide(const Medium* medium, Packet* p, Ints wanted, float step_size, bool has_ground, float ground,
-                                Strides* strides) {
+// region_tiles[region][block]: tiles of index, coefficients and source (< 0: none), and the one region of the block.
+static ALWAYS_INLINE Ints glide(const Medium* medium, const global int4* region_tiles, Packet* p, Ints wanted, float step_size,
+                                bool has_ground, float ground, Strides* strides) {
   const Points x = load_points(p->x[0]), v_before = load_points(p->v[0]);
   const Floats dtau = LOAD(p->dtau);
   const Points middle = along(x, 0.5f * dtau, v_before);
   const Cells cells = locate_all(middle);
+  LANE_ARRAY int entry[LANES];
+  STORE(LOAD(p->tile_row) + cells.block, entry);
+  const Points f = cells.fraction;
+  const Floats far = f.y * f.z;
+  STORE(1.0f - f.y - f.z + far, strides->rows[0]);
+  STORE(f.y - far, strides->rows[1]);
+  STORE(f.z - far, strides->rows[2]);
+  STORE(far, strides->rows[3]);
   STORE(cells.block, strides->block);
   STORE(cells.node, strides->node);
-  store_points(cells.fraction, strides->fraction[0]);
+  store_points(f, strides->fraction[0]);
+  QuadInts tiles[LANE_QUADS];
+#define TILES(lane) region_tiles[entry[lane]]
+  COLLECT(tiles, TILES);
+#undef TILES
+  const Ints coefficient_tile = COMPONENT1(Ints, tiles), source_tile = COMPONENT2(Ints, tiles);
+  strides->no_coefficients = coefficient_tile >> 31;
+  strides->no_source = source_tile >> 31;
+  strides->coefficients_at = TURBID_TILE_NODES * not_negative(coefficient_tile);
+  strides->source_at = TURBID_TILE_NODES * not_negative(source_tile);
   Ints going = wanted;
   Points v = v_before;
 #if TURBID_GRADED
-  Quads force[QUADS];
-#define FORCE(lane) force_on(medium, p, strides, lane)
-  COLLECT4(force, FORCE);
+  const Ints index_tile = COMPONENT0(Ints, tiles), no_index = index_tile >> 31;
+  LANE_ARRAY int node[LANES];
+  STORE(TURBID_TILE_NODES * not_negative(index_tile) + cells.node, node);
+  Quads force[LANE_QUADS];
+#define FORCE(lane) value_at(medium->index_tiles, node[lane], strides, lane)
+  COLLECT(force, FORCE);
 #undef FORCE
-  v = along(v, dtau, (Points){COMPONENT0(force), COMPONENT1(force), COMPONENT2(force)});
+  v = along(v, no_index ? (Floats)(0.0f) : dtau,
+            (Points){COMPONENT0(Floats, force), COMPONENT1(Floats, force), COMPONENT2(Floats, force)});
   const Points mean = {0.5f * (v_before.x + v.x), 0.5f * (v_before.y + v.y), 0.5f * (v_before.z + v.z)};
   strides->eta_squared = squared_length(mean);
   strides->length = dtau * sqrt(strides->eta_squared);
-  if (any_of(going & LOAD(p->exact))) going &= ~without_tile(medium, p->index_row, strides, LOAD(p->exact));
+  going &= ~(LOAD(p->exact) & no_index);
 #else
   strides->eta_squared = squared_length(v);
   strides->length = (Floats)(step_size);
@@ -139,11 +151,9 @@ static ALWAYS_INLINE Ints glide(const Medium* medium, Packet* p, Ints wanted, fl
 #if TURBID_BODIES > 0
   // Whose is the point that the step leads to?
   const Ints block = locate_all(to).block, region = LOAD(p->region);
-  LANE_ARRAY int blocks[LANES], foreign = 0;
-  STORE(block, blocks);
-  for (int i = 0; i < LANES; ++i) foreign |= medium->block_region[blocks[i]] ^ p->region[i];
-  if (foreign) {
-    LANE_ARRAY int owner[LANES];
+  if (any_of(going & (MASK(block != cells.block) | MASK(COMPONENT3(Ints, tiles) != region)))) {
+    LANE_ARRAY int blocks[LANES], owner[LANES];
+    STORE(block, blocks);
     for (int i = 0; i < LANES; ++i) owner[i] = medium->block_region[blocks[i]];
     const Ints known = MASK(LOAD(owner) == region) | (MASK(block == LOAD(p->room_block)) & MASK(room >= 0.0f));
     const Ints asking = going & ~known;
@@ -171,14 +181,6 @@ static ALWAYS_INLINE Ints glide(const Medium* medium, Packet* p, Ints wanted, fl
   return going;
 }
 
-// (1 - exp(-x)) / x for all lanes.
-static ALWAYS_INLINE Floats mean_transmittances(Floats depth) {
-  Floats mean = MEAN_TRANSMITTANCE_SERIES(depth);
-  const Ints deep = MASK(depth > 0.5f);
-  if (any_of(deep)) mean = deep ? -expm1(-depth) / greatest(depth, (Floats)(0.5f)) : mean;
-  return mean;
-}
-
 // Three colours, or one, of all lanes.
 typedef struct {
   Floats channel[TURBID_CHANNELS];
@@ -195,6 +197,23 @@ static ALWAYS_INLINE void store_colours(Colours colours, float* arrays) {
   for (int channel = 0; channel < TURBID_CHANNELS; ++channel) STORE(colours.channel[channel], arrays + LANES * channel);
 }
 
+// (1 - exp(-x)) / x for all lanes.
+static ALWAYS_INLINE Colours mean_transmittances(Colours depth) {
+  Colours mean;
+  Ints deep = (Ints)(0);
+  UNROLL
+  for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
+    mean.channel[channel] = MEAN_TRANSMITTANCE_SERIES(depth.channel[channel]);
+    deep |= MASK(depth.channel[channel] > 0.5f);
+  }
+  if (!any_of(deep)) return mean;
+  for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
+    const Floats x = depth.channel[channel];
+    mean.channel[channel] = MASK(x > 0.5f) ? -expm1(-x) / greatest(x, (Floats)(0.5f)) : mean.channel[channel];
+  }
+  return mean;
+}
+
 // One lane's.
 static Colour lane_colour(const float (*arrays)[LANES], int lane) {
 #if TURBID_CHANNELS == 3
@@ -209,41 +228,53 @@ static void set_lane_colour(Colour value, float (*arrays)[LANES], int lane) {
   for (int channel = 0; channel < TURBID_CHANNELS; ++channel) arrays[channel][lane] = colour_channel(value, channel);
 }
 
-// A colour of each lane, which f(lane) gives.
-#if TURBID_CHANNELS == 3
-#define COLLECT_COLOURS(colours, f)                                                          \
-  {                                                                                          \
-    Quads quads[QUADS];                                                                      \
-    COLLECT4(quads, f);                                                                      \
-    colours = (Colours){{COMPONENT0(quads), COMPONENT1(quads), COMPONENT2(quads)}};         \
-  }
-#else
-#define COLLECT_COLOURS(colours, f) COLLECT(colours.channel[0], f)
-#endif
-
 typedef struct {
   Colours sigma_s, sigma_a;  // [1/voxel]
 } Extinctions;
 
 // Half way through the rays' steps.
 static ALWAYS_INLINE Extinctions extinctions_at(const Medium* medium, const Packet* p, const Strides* strides) {
+  Extinctions result = {load_colours(p->sigma_s[0]), load_colours(p->sigma_a[0])};
 #if TURBID_HETEROGENEOUS
-  Extinction each[LANES];
-  for (int i = 0; i < LANES; ++i) {
-    const int tile = tile_in(medium, p->coefficient_row[i], strides->block[i]);
-    each[i] = extinction_in(medium, max(p->region[i], 0), tile, cell_of(strides, i));
-  }
-  Extinctions result;
-#define SIGMA_S(lane) each[lane].sigma_s
-#define SIGMA_A(lane) each[lane].sigma_a
-  COLLECT_COLOURS(result.sigma_s, SIGMA_S);
-  COLLECT_COLOURS(result.sigma_a, SIGMA_A);
-#undef SIGMA_S
-#undef SIGMA_A
-  return result;
+  LANE_ARRAY int node[LANES];
+  STORE(strides->coefficients_at + LOAD(strides->node), node);
+  const Ints plain = strides->no_coefficients;
+#if TURBID_CHANNELS == 3
+  Quads scattered[LANE_QUADS], absorbed[LANE_QUADS];
+  // Eight numbers a node, as if they were two nodes of four: scattering, absorption.
+  for (int k = 0; k < LANE_QUADS; ++k) {
+    float8 each[LANES / LANE_QUADS];
+    UNROLL
+    for (int i = 0; i < LANES / LANE_QUADS; ++i) {
+      const int lane = LANES / LANE_QUADS * k + i;
+      each[i] = coefficients_of(medium->coefficient_tiles + COEFFICIENT_WIDTH * node[lane], &strides->rows[0][lane], LANES,
+                                strides->fraction[0][lane]);
+    }
+#if LANES == 1
+    scattered[0] = each[0].lo, absorbed[0] = each[0].hi;
 #else
-  return (Extinctions){load_colours(p->sigma_s[0]), load_colours(p->sigma_a[0])};
+    scattered[k] = (Quads)(each[0].lo, each[1].lo, each[2].lo, each[3].lo);
+    absorbed[k] = (Quads)(each[0].hi, each[1].hi, each[2].hi, each[3].hi);
 #endif
+  }
+  result.sigma_s.channel[0] = plain ? result.sigma_s.channel[0] : COMPONENT0(Floats, scattered);
+  result.sigma_s.channel[1] = plain ? result.sigma_s.channel[1] : COMPONENT1(Floats, scattered);
+  result.sigma_s.channel[2] = plain ? result.sigma_s.channel[2] : COMPONENT2(Floats, scattered);
+  result.sigma_a.channel[0] = plain ? result.sigma_a.channel[0] : COMPONENT0(Floats, absorbed);
+  result.sigma_a.channel[1] = plain ? result.sigma_a.channel[1] : COMPONENT1(Floats, absorbed);
+  result.sigma_a.channel[2] = plain ? result.sigma_a.channel[2] : COMPONENT2(Floats, absorbed);
+#else
+  LANE_ARRAY float s[LANES], a[LANES];
+  for (int i = 0; i < LANES; ++i) {
+    const float2 sigma = coefficients_of(medium->coefficient_tiles + COEFFICIENT_WIDTH * node[i], &strides->rows[0][i], LANES,
+                                         strides->fraction[0][i]);
+    s[i] = sigma.x, a[i] = sigma.y;
+  }
+  result.sigma_s.channel[0] = plain ? result.sigma_s.channel[0] : LOAD(s);
+  result.sigma_a.channel[0] = plain ? result.sigma_a.channel[0] : LOAD(a);
+#endif
+#endif
+  return result;
 }
 
 #endif

@@ -46,19 +46,40 @@ static float fraction_inside(float from, float to, float size) {
   return 1.0f;
 }
 
-// Distance along the unit direction to where the ray leaves its block of cells; at least a hundredth of a voxel.
-static float distance_to_block_end(float3 x, float3 direction) {
-  const float3 y = x - 0.5f;
-  const float3 block = clamp(floor(y * 0.125f), (float3)(0.0f), (float3)(BLOCKS_X - 1, BLOCKS_Y - 1, BLOCKS_Z - 1));
-  float result = 1e9f;
-  const float position[3] = {x.x, x.y, x.z};
-  const float along[3] = {direction.x, direction.y, direction.z};
-  const float lower[3] = {8.0f * block.x + 0.5f, 8.0f * block.y + 0.5f, 8.0f * block.z + 0.5f};
-  for (int axis = 0; axis < 3; ++axis) {
-    if (along[axis] > 1e-6f) result = fmin(result, (lower[axis] + 8.0f - position[axis]) / along[axis]);
-    if (along[axis] < -1e-6f) result = fmin(result, (lower[axis] - position[axis]) / along[axis]);
+// How far along the unit direction a ray stays in the blocks of cells that are all `region`'s, or within its own block where
+// more regions meet; and a hundredth of a voxel more. `alone`: its own block is all the region's.
+static float distance_in_blocks(const Medium* medium, int region, float3 x, float3 direction, bool* alone) {
+  const float3 y = (x - 0.5f) * 0.125f, last = (float3)(BLOCKS_X - 1, BLOCKS_Y - 1, BLOCKS_Z - 1);
+  const float3 block = clamp(floor(y), (float3)(0.0f), last);
+  // To the next face of a block and from face to face, along each axis.
+  const float3 along = fabs(direction) > 1e-6f ? direction : (float3)(1e-6f);
+  const float3 inverse = 8.0f / along, between = fabs(inverse);
+  const bool up_x = along.x > 0.0f, up_y = along.y > 0.0f, up_z = along.z > 0.0f;
+  const float3 face = block + (float3)(up_x ? 1.0f : 0.0f, up_y ? 1.0f : 0.0f, up_z ? 1.0f : 0.0f);
+  float3 next = (face - y) * inverse;
+  int left_x = (int)(up_x ? last.x - block.x : block.x), left_y = (int)(up_y ? last.y - block.y : block.y),
+      left_z = (int)(up_z ? last.z - block.z : block.z);
+  int at = (int)block.x + BLOCKS_X * ((int)block.y + BLOCKS_Y * (int)block.z);
+  *alone = medium->block_region[at] == region;
+  float end = fmin(next.x, fmin(next.y, next.z));
+  while (*alone) {
+    if (next.x == end) {
+      if (left_x-- == 0) break;
+      at += up_x ? 1 : -1;
+      next.x += between.x;
+    } else if (next.y == end) {
+      if (left_y-- == 0) break;
+      at += up_y ? BLOCKS_X : -BLOCKS_X;
+      next.y += between.y;
+    } else {
+      if (left_z-- == 0) break;
+      at += up_z ? BLOCKS_X * BLOCKS_Y : -BLOCKS_X * BLOCKS_Y;
+      next.z += between.z;
+    }
+    if (medium->block_region[at] != region) break;
+    end = fmin(next.x, fmin(next.y, next.z));
   }
-  return fmax(result, 0.0f) + 0.01f;
+  return fmax(end, 0.0f) + 0.01f;
 }
 
 // Narrows the first change of region on the segment a-b down to 2^-6 of it, then takes the zero of the signed distance by
@@ -129,8 +150,8 @@ static Step advance(const Medium* medium, Ray* ray, float step_size, float room)
     float length = step_size;
     if (region->source_set < 0 && region->coefficient_set < 0) {
       // Constant coefficients and nothing to gather: one exact segment.
-      const float end = distance_to_block_end(from, direction);
-      const bool alone = medium->block_region[locate(from).block] == ray->region;
+      bool alone;
+      const float end = distance_in_blocks(medium, ray->region, from, direction, &alone);
       length = fmax(length, alone ? end : fmin(room, end));
     }
     to = from + length * direction;

@@ -120,7 +120,35 @@ static void find_crossing(const Medium* medium, Step* step, int region, float3 a
   step->beyond = a + high * (b - a);
 }
 
-// Advances the ray by at most `step_size` of arc (farther where nothing can happen on the way) and says what stopped it.
+// What the segment from `from` to `*to` meets: `*to` is moved to a face of the domain or just before another region's surface.
+static void meet(const Medium* medium, Step* step, int region, float grace, float3 from, float3* to) {
+  const float fx = fraction_inside(from.x, to->x, (float)TURBID_VOXELS_X);
+  const float fy = fraction_inside(from.y, to->y, (float)TURBID_VOXELS_Y);
+  const float fz = fraction_inside(from.z, to->z, (float)TURBID_VOXELS_Z);
+  const float inside = fmin(fx, fmin(fy, fz));
+  if (inside < 1.0f) {
+    step->event = EVENT_FACE;
+    if (fx <= fy && fx <= fz) step->face = to->x > from.x ? 1 : 0;
+    else if (fy <= fz) step->face = to->y > from.y ? 3 : 2;
+    else step->face = to->z > from.z ? 5 : 4;
+    *to = from + inside * (*to - from);
+  }
+  step->room = 1e9f;
+#if TURBID_BODIES > 0
+  const int there = region_with_room(medium, locate(*to), &step->room);
+  if (there == region) return;
+  step->room = 0.0f;
+  // A ray that starts on the rasterised surface may find itself a little on the wrong side of the sampled one, which is
+  // coarser: it keeps its region while it gets clear.
+  if (grace > 0.0f && step->event == EVENT_NONE) return;
+  step->event = EVENT_SURFACE;
+  step->next_region = there;
+  const float3 end = *to;
+  find_crossing(medium, step, region, from, end, to);
+#endif
+}
+
+// Advances the ray by at most `step_size` of arc, or through clear media to the next surface or face, and says what stopped it.
 // `room`: as far as this the ray surely meets no surface in its block [voxels]; 0 where nothing is known.
 static Step advance(const Medium* medium, Ray* ray, float step_size, float room) {
   Step step;
@@ -128,10 +156,10 @@ static Step advance(const Medium* medium, Ray* ray, float step_size, float room)
   step.next_region = ray->region;
   step.surface = ray->region;
   step.face = 0;
+  step.room = room;
   const float3 from = ray->x;
   const global RegionParams* region = medium->regions + ray->region;
-  float3 to;
-  float3 v = ray->v;
+  float3 to, v = ray->v;
   bool graded = false;
 #if TURBID_GRADED
   const float dtau = step_size * region->tau_per_arc;
@@ -142,66 +170,39 @@ static Step advance(const Medium* medium, Ray* ray, float step_size, float room)
       graded = true;
       v += dtau * interpolate4(medium->index_tiles, tile, cell).xyz;
       to = from + 0.5f * dtau * (ray->v + v);
+      const float3 target = to;
+      meet(medium, &step, ray->region, ray->grace, from, &to);
+      float done = dtau;
+      if (step.event != EVENT_NONE) {
+        // The velocity follows the part of the step that was done.
+        done *= distance(from, to) / fmax(distance(from, target), 1e-12f);
+        v = ray->v + done * index_at(medium, ray->region, locate(from + 0.5f * done * ray->v)).xyz;
+      }
+      step.middle = from + 0.5f * done * ray->v;
     }
   }
 #endif
   if (!graded) {
     const float3 direction = v * rsqrt(dot(v, v));
-    float length = step_size;
-    if (region->source_set < 0 && region->coefficient_set < 0) {
-      // Constant coefficients and nothing to gather: one exact segment.
-      bool alone;
-      const float end = distance_in_blocks(medium, ray->region, from, direction, &alone);
-      length = fmax(length, alone ? end : fmin(room, end));
-    }
-    to = from + length * direction;
+    // Constant coefficients and nothing to gather: one exact segment, until the index changes.
+    const bool exact = region->source_set < 0 && region->coefficient_set < 0, straight = exact && region->index_set < 0;
+    float done = 0.0f;
+    to = from;
+    do {
+      const float3 start = to;
+      float length = step_size;
+      if (exact) {
+        bool alone;
+        const float end = distance_in_blocks(medium, ray->region, start, direction, &alone);
+        length = fmax(length, alone ? end : fmin(step.room, end));
+      }
+      to = start + length * direction;
+      meet(medium, &step, ray->region, ray->grace - done, start, &to);
+      done += distance(start, to);
+    } while (straight && step.event == EVENT_NONE);
+    step.middle = 0.5f * (from + to);
   }
-  // The domain's faces.
-  const float3 target = to;
-  float inside = 1.0f;
-  {
-    const float fx = fraction_inside(from.x, to.x, (float)TURBID_VOXELS_X);
-    const float fy = fraction_inside(from.y, to.y, (float)TURBID_VOXELS_Y);
-    const float fz = fraction_inside(from.z, to.z, (float)TURBID_VOXELS_Z);
-    inside = fmin(fx, fmin(fy, fz));
-    if (inside < 1.0f) {
-      step.event = EVENT_FACE;
-      if (fx <= fy && fx <= fz) step.face = to.x > from.x ? 1 : 0;
-      else if (fy <= fz) step.face = to.y > from.y ? 3 : 2;
-      else step.face = to.z > from.z ? 5 : 4;
-      to = from + inside * (to - from);
-    }
-  }
-  // Another region's surface on the way?
-  step.room = 1e9f;
-#if TURBID_BODIES > 0
-  const int there = region_with_room(medium, locate(to), &step.room);
-  if (there != ray->region) {
-    step.room = 0.0f;
-    // A ray that starts on the rasterised surface may find itself a little on the wrong side of the sampled one, which is
-    // coarser: it keeps its region while it gets clear.
-    const bool getting_clear = ray->grace > 0.0f && step.event == EVENT_NONE;
-    if (!getting_clear) {
-      step.event = EVENT_SURFACE;
-      step.next_region = there;
-      const float3 end = to;
-      find_crossing(medium, &step, ray->region, from, end, &to);
-    }
-  }
-#endif
   step.length = distance(from, to);
-  step.middle = 0.5f * (from + to);
-#if TURBID_GRADED
-  if (graded) {
-    float done = dtau;
-    if (step.event != EVENT_NONE) {
-      // The velocity follows the part of the step that was done.
-      done *= step.length / fmax(distance(from, target), 1e-12f);
-      v = ray->v + done * index_at(medium, ray->region, locate(from + 0.5f * done * ray->v)).xyz;
-    }
-    step.middle = from + 0.5f * done * ray->v;
-  }
-#endif
   const float3 mean = 0.5f * (ray->v + v);
   step.eta_squared = dot(mean, mean);
   ray->x = to;

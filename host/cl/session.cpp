@@ -75,7 +75,15 @@ void Session::require_memory(std::size_t bytes) const {
 }
 
 Program Session::build(const std::string& file, const std::vector<Define>& defines) const {
+  std::ostringstream options;
+  options << "-cl-std=CL1.2 -cl-mad-enable -cl-no-signed-zeros -cl-kernel-arg-info";
+  for (const Define& define : defines) options << " -D" << define.name << "=" << define.value;
   const std::string source = kernel_source(file);
+  ProgramHandle& known = programs_[options.str() + "\n" + source];
+  if (known.get()) {
+    check(clRetainProgram(known.get()), file.c_str());
+    return Program(ProgramHandle(known.get()), file);
+  }
   const double started = wall_time();
   const char* pointer = source.c_str();
   const std::size_t length = source.size();
@@ -83,9 +91,6 @@ Program Session::build(const std::string& file, const std::vector<Define>& defin
   ProgramHandle handle(clCreateProgramWithSource(context(), 1, &pointer, &length, &status));
   check(status, file.c_str());
 
-  std::ostringstream options;
-  options << "-cl-std=CL1.2 -cl-mad-enable -cl-no-signed-zeros -cl-kernel-arg-info";
-  for (const Define& define : defines) options << " -D" << define.name << "=" << define.value;
   status = clBuildProgram(handle.get(), 1, &device_.device, options.str().c_str(), nullptr, nullptr);
   if (status != CL_SUCCESS) {
     std::size_t size = 0;
@@ -95,6 +100,8 @@ Program Session::build(const std::string& file, const std::vector<Define>& defin
     throw DeviceError(file + " does not build (" + options.str() + "): " + status_name(status) + "\n" + log);
   }
   if (recorder_->on()) recorder_->add(BuiltProgram{file, options.str(), {}, started, wall_time()});
+  check(clRetainProgram(handle.get()), file.c_str());
+  known = ProgramHandle(handle.get());
   return Program(std::move(handle), file);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A context on one device with its in-order queues; programs from kernel files; typed buffers and kernels.
 #pragma once
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -178,7 +179,7 @@ class Session {
   Queue& march_queue() { return *march_; }
   Queue& lattice_queue() { return *lattice_; }
 
-  /// Builds kernels/<file> with the given integers. Throws DeviceError with the compiler's log.
+  /// Builds kernels/<file> with the given integers, once in a session. Throws DeviceError with the compiler's log.
   Program build(const std::string& file, const std::vector<Define>& defines) const;
 
   template <class T>
@@ -269,6 +270,7 @@ class Session {
 
   DeviceInfo device_;
   ContextHandle context_;
+  mutable std::map<std::string, ProgramHandle> programs_;  // by options and source
   std::shared_ptr<MemoryCount> memory_ = std::make_shared<MemoryCount>();
   std::unique_ptr<Recorder> recorder_ = std::make_unique<Recorder>();
   std::unique_ptr<Queue> march_, lattice_;

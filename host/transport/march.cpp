@@ -135,13 +135,15 @@ bool March::finish_batch(const std::function<void()>& between) {
   return ray_count_ > 0;
 }
 
-std::vector<std::int64_t> March::read_deposit() {
+const std::vector<std::int64_t>& March::read_deposit() {
   cl::Queue& queue = session_.march_queue();
   if (volumes_ > 0) {
     const int nodes = params_.own_nodes;
     sum_deposits_.enqueue(queue, {static_cast<std::size_t>(nodes)}, {64}, own_sums_, deposit_, volumes_, nodes);
   }
-  return session_.read(queue, deposit_);
+  read_.resize(deposit_.count());
+  session_.read(queue, deposit_, std::span<std::int64_t>(read_));
+  return read_;
 }
 
 std::vector<std::int64_t> March::read_flux() { return session_.read(session_.march_queue(), flux_); }

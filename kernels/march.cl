@@ -88,7 +88,7 @@ kernel void march(MEDIUM_ARGUMENTS, const global int4* region_tiles, MarchParams
     Strides strides;
     const Ints gone = glide(&medium, region_tiles, &hot.rays, wanted, p.step, p.ground, p.ground_height, &strides);
     Ints apart = (Ints)(0);
-    if (any_of(gone & LOAD(hot.rays.participates))) apart = attenuate_all(&hot, &medium, &sinks, &p, &strides, gone);
+    if (any_of(gone & LOAD(hot.rays.participates))) apart = attenuate_all(&hot, &medium, region_tiles, &sinks, &p, &strides, gone);
     const Ints waiting = (alive & ~gone) | apart;
     if (!any_of(waiting)) continue;
     LANE_ARRAY int waits[LANES], steps[LANES], attenuates[LANES];

@@ -35,10 +35,39 @@ static void put_path(Hot* hot, int lane, const Path* path, const Medium* medium,
   hot->steps_left[lane] = path->steps_left;
 }
 
+#if TURBID_SCATTERING
+// Moves the points of thick steps from half way to where the light is lost on average, see `centre_of_loss`, unless the region
+// has no tile there.
+static ALWAYS_INLINE void move_to_losses(const Hot* hot, const global int4* region_tiles, Strides* strides, Ints thick,
+                                         Floats depth, int* tile) {
+  const Floats squared = depth * depth;
+  const Floats centre = 0.5f - depth * (1.0f / 12.0f - squared * (1.0f / 720.0f - squared * (1.0f / 30240.0f - squared * (1.0f / 1209600.0f))));
+  const Points v = load_points(hot->rays.v[0]);
+  const Floats back = (centre - 1.0f) * strides->length / sqrt(squared_length(v));
+  const Cells cells = locate_all(along(load_points(hot->rays.x[0]), back, v));
+  LANE_ARRAY int moves[LANES], entry[LANES], block[LANES], node[LANES];
+  LANE_ARRAY float fraction[3][LANES];
+  STORE(thick, moves);
+  STORE(LOAD(hot->rays.tile_row) + cells.block, entry);
+  STORE(cells.block, block);
+  STORE(cells.node, node);
+  store_points(cells.fraction, fraction[0]);
+  for (int i = 0; i < LANES; ++i) {
+    if (!moves[i]) continue;
+    const int there = region_tiles[entry[i]].z;
+    if (there < 0) continue;
+    tile[i] = TURBID_TILE_NODES * there;
+    strides->block[i] = block[i];
+    strides->node[i] = node[i];
+    for (int axis = 0; axis < 3; ++axis) strides->fraction[axis][i] = fraction[axis][i];
+  }
+}
+#endif
+
 // What the steps of the rays in `gone` take from them, as `attenuate` does; the mask of those left for `attenuate` itself: they
-// may end here, or lose so much that where on the step counts.
-static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, Sinks* sinks, const MarchParams* p,
-                                        const Strides* strides, Ints gone) {
+// may end here, or lose nearly all.
+static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, const global int4* region_tiles, Sinks* sinks,
+                                        const MarchParams* p, Strides* strides, Ints gone) {
   const Extinctions sigma = extinctions_at(medium, &hot->rays, strides);
   const Colours power = load_colours(hot->power[0]);
   Colours depth, scattered, absorbed;
@@ -58,7 +87,7 @@ static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, Sinks* s
   }
   Ints apart = gone & MASK(heaviest < LOAD(hot->floor_power));
 #if TURBID_SCATTERING
-  apart |= gone & MASK(deepest > THICK_STEP);
+  apart |= gone & MASK(deepest > 1.0f);  // as far as the series in `move_to_losses` goes
 #endif
   const Ints here = gone & ~apart;
 #if TURBID_SCATTERING
@@ -69,6 +98,8 @@ static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, Sinks* s
   STORE(leaves, deposits);
   STORE(strides->source_at, tile);
   store_colours(scattered, left[0]);
+  const Ints thick = leaves & MASK(deepest > THICK_STEP);
+  if (any_of(thick)) move_to_losses(hot, region_tiles, strides, thick, deepest, tile);
   for (int i = 0; i < LANES; ++i) {
     if (!deposits[i]) continue;
     float3 direction = (float3)(0.0f);

@@ -3,16 +3,15 @@
 // In: rays. Out: rays still under way and branches split off at interfaces, deposits on the source tiles, tallies, light on
 // the ground. A launch does at most `batch_steps` steps per ray, and one split.
 //
-// A work-item traces TURBID_INTERLEAVE rays in turn, one step each: on CPUs the next ray's step fills the time in which this
-// one's waits for memory and arithmetic. On GPUs the hardware does that with work-items, and one ray is best.
+// A work-item traces a packet of rays in step, see lib/packet.h.
 //
 // Attenuation (Beer and Lambert), sigma constant over a step of length ds:
 //     P' = P exp(-sigma_t ds);   the loss P - P' is scattered by the share sigma_s / sigma_t and absorbed else.
 // (Bernabei's Fig. 4 adds exponentials where it must multiply, and deposits P' where it must deposit the scattered loss.)
-#include "lib/march_path.h"
+#include "lib/march_packet.h"
 
-#if !defined(TURBID_INTERLEAVE) || !defined(TURBID_RAYS_PER_CLAIM)
-#error "TURBID_INTERLEAVE and TURBID_RAYS_PER_CLAIM must be defined"
+#if !defined(TURBID_RAYS_PER_CLAIM)
+#error "TURBID_RAYS_PER_CLAIM must be defined"
 #endif
 
 // One step of any kind.
@@ -21,7 +20,7 @@ static void step_with_care(Path* path, const Medium* medium, Sinks* sinks, const
   Ray* ray = &path->ray;
   const int region = ray->region;
   const float3 from = ray->x;
-  const Step step = advance(medium, ray, p->step, path->place.room);
+  const Step step = advance(medium, ray, p->step, path->room);
   if (p->ground && region == 0 && from.y > p->ground_height && ray->x.y <= p->ground_height) {
     // The ground cuts through the domain: what reaches it counts as escaped downwards.
     tally(sinks, TURBID_TALLY_ESCAPED + 2, path->power, p);
@@ -38,62 +37,89 @@ static void step_with_care(Path* path, const Medium* medium, Sinks* sinks, const
   if (step.event == EVENT_FACE) meet_face(path, medium, sinks, p, state->texel, step.face);
   if (step.event == EVENT_SURFACE) meet_surface(path, medium, sinks, p, state, &step);
   if (path->index < 0) return;
-  look_around(medium, ray, p->step, step.event == EVENT_NONE ? step.room : 0.0f, &path->place);
-  if (p->ground && ray->region == 0) path->place.room = fmin(path->place.room, fabs(ray->x.y - p->ground_height));
+  path->room = step.event == EVENT_NONE ? step.room : 0.0f;
+}
+
+// What a work-item has claimed of the rays.
+typedef struct {
+  int next, end;
+} Claim;
+
+// Begins the next rays until one has a path to follow, or none is left.
+static void begin_next(Path* path, Claim* claim, const Medium* medium, Sinks* sinks, const MarchParams* p,
+                       const global RayState* rays, global int* claims) {
+  while (path->index < 0) {
+    if (claim->next == claim->end) {
+      const int next = p->first_ray + atomic_add(claims, TURBID_RAYS_PER_CLAIM);
+      claim->end = min(next + TURBID_RAYS_PER_CLAIM, p->end_ray);
+      claim->next = min(next, claim->end);
+      if (claim->next == claim->end) return;
+    }
+    begin(path, medium, sinks, p, rays + claim->next, claim->next);
+    ++claim->next;
+  }
 }
 
 // Work-items claim rays first_ray ... end_ray - 1 a few at a time until none is left; `claims` counts from 0 in each launch.
-kernel void march(MEDIUM_ARGUMENTS, MarchParams p, const global RayState* rays, global RayState* next,
+kernel void march(MEDIUM_ARGUMENTS, const global int4* region_tiles, MarchParams p, const global RayState* rays, global RayState* next,
                   global int* next_count, global int* claims, global long* deposit, global long* flux,
                   global long* tallies, global long* ground, global int* ground_rays, global long* transmitted) {
   const Medium medium = MEDIUM_FROM_ARGUMENTS;
   Sinks sinks = {next, next_count, deposit + (size_t)p.own_nodes * OWN_WIDTH * get_global_id(0), flux, tallies, ground,
                  transmitted, ground_rays, 0, 0};
-  Path paths[TURBID_INTERLEAVE];
-  for (int i = 0; i < TURBID_INTERLEAVE; ++i) paths[i].index = -1;
-  int claimed = 0, claim_end = 0;
-  long steps = 0;
-  bool busy = true;
-  while (busy) {
-    busy = false;
-    for (int i = 0; i < TURBID_INTERLEAVE; ++i) {
+  Path paths[LANES];
+  Hot hot;
+  Claim claim = {0, 0};
+  LANE_ARRAY int done[LANES];
+  for (int i = 0; i < LANES; ++i) {
+    paths[i].index = -1;
+    done[i] = 0;
+    clear_lane(&hot.rays, i);
+    begin_next(paths + i, &claim, &medium, &sinks, &p, rays, claims);
+    put_path(&hot, i, paths + i, &medium, p.step);
+  }
+  while (true) {
+    const Ints alive = MASK(LOAD(hot.rays.region) >= 0);
+    if (!any_of(alive)) break;
+    const Ints rests = MASK(LOAD(hot.steps_left) == 0), wanted = alive & ~rests & MASK(LOAD(hot.steps) < p.max_steps);
+    STORE(LOAD(hot.steps) - wanted, hot.steps);  // a mask is -1
+    STORE(LOAD(hot.steps_left) + wanted, hot.steps_left);
+    STORE(LOAD(done) - wanted, done);
+    Strides strides;
+    const Ints gone = glide(&medium, region_tiles, &hot.rays, wanted, p.step, p.ground, p.ground_height, &strides);
+    Ints apart = (Ints)(0);
+    if (any_of(gone & LOAD(hot.rays.participates))) apart = attenuate_all(&hot, &medium, region_tiles, &sinks, &p, &strides, gone);
+    const Ints waiting = (alive & ~gone) | apart;
+    if (!any_of(waiting)) continue;
+    LANE_ARRAY int waits[LANES], steps[LANES], attenuates[LANES];
+    LANE_ARRAY float length[LANES];
+    STORE(waiting, waits);
+    STORE(wanted, steps);
+    STORE(apart, attenuates);
+    STORE(strides.length, length);
+    for (int i = 0; i < LANES; ++i) {
+      if (!waits[i]) continue;
       Path* path = paths + i;
-      if (path->index < 0) {
-        if (claimed == claim_end) {
-          claimed = p.first_ray + atomic_add(claims, TURBID_RAYS_PER_CLAIM);
-          claim_end = min(claimed + TURBID_RAYS_PER_CLAIM, p.end_ray);
-          claimed = min(claimed, claim_end);
-          if (claimed == claim_end) continue;
-        }
-        begin(path, &medium, &sinks, &p, rays + claimed, claimed);
-        ++claimed;
-        busy = true;
-        continue;
-      }
-      busy = true;
-      if (path->steps >= p.max_steps) {
-        end_path(path, &sinks, &p, path->power);
-        continue;
-      }
-      if (path->steps_left == 0) {
-        store_ray(&sinks, path, &path->ray, path->place.room, path->power, rays + path->index);
-        end_path(path, &sinks, &p, none());
-        continue;
-      }
-      ++path->steps;
-      --path->steps_left;
-      ++steps;
-      Stride stride;
-      if (glide(&medium, &path->ray, &path->place, p.step, &stride)) {
-        const int region = path->ray.region;
-        if (!medium.regions[region].attenuates) continue;
-        const Extinction sigma = extinction_in(&medium, region, path->place.coefficient_tile, stride.cell);
-        attenuate(path, &medium, &sinks, &p, sigma, stride.length, path->place.source_tile, stride.cell);
-      } else {
+      take_path(&hot, i, path);
+      if (attenuates[i]) {
+        const Cell cell = cell_of(&strides, i);
+        const int set = medium.regions[path->ray.region].source_set;
+        attenuate(path, &medium, &sinks, &p, extinction_at(&medium, path->ray.region, cell), length[i],
+                  set >= 0 ? tile_of(&medium, set, cell.block) : -1, cell);
+      } else if (steps[i]) {
         step_with_care(path, &medium, &sinks, &p, rays + path->index);
+      } else if (path->steps >= p.max_steps) {
+        end_path(path, &sinks, &p, path->power);
+      } else {
+        store_ray(&sinks, path, &path->ray, path->room, path->power, rays + path->index);
+        end_path(path, &sinks, &p, none());
       }
+      begin_next(path, &claim, &medium, &sinks, &p, rays, claims);
+      put_path(&hot, i, path, &medium, p.step);
     }
   }
+  long steps = 0;
+  for (int i = 0; i < LANES; ++i) steps += done[i];
   global long* work = tallies + 3 * TURBID_TALLY_WORK;
   add_count(work, steps);
   add_count(work + 1, sinks.deposits);

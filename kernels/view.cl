@@ -6,13 +6,12 @@
 //     L_obs = eta_obs^2 * integral of Tr j / eta^2 ds,    j = (sigma_s fluence + deposit + emission) / (4 pi)
 // with the source constant over a step ds:  Tr j (1 - exp(-sigma_t ds)) / sigma_t.
 //
-// A work-item follows TURBID_INTERLEAVE camera samples in turn, one step each, like march.cl.
+// A work-item follows a packet of camera samples in step, see lib/packet.h.
 #include "lib/gather.h"
 #include "lib/surroundings.h"
-#include "lib/trace.h"
 
-#if !defined(TURBID_INTERLEAVE) || !defined(TURBID_SAMPLES_PER_CLAIM)
-#error "TURBID_INTERLEAVE and TURBID_SAMPLES_PER_CLAIM must be defined"
+#if !defined(TURBID_SAMPLES_PER_CLAIM)
+#error "TURBID_SAMPLES_PER_CLAIM must be defined"
 #endif
 
 #define STACK 16
@@ -22,16 +21,43 @@ typedef struct {
   Colour weight;  // Tr, Fresnel factors and eta_obs^2, of radiance / eta^2
 } Branch;
 
-// A camera sample: the branch it follows and those that wait.
+// A camera sample: the branch it follows and those that wait. While the packet carries the branch on, what changes from step
+// to step stands there, and `now` and `gathered` are out of date.
 typedef struct {
   Branch now;
-  Place place;
+  float room;  // see Packet
   Colour gathered;
   float3 surfaces;
   int index;  // of the sample; < 0: none
   int steps, met, stacked;
   Branch stack[STACK];
 } Path;
+
+typedef struct {
+  Packet rays;
+  LANE_ARRAY float weight[TURBID_CHANNELS][LANES], gathered[TURBID_CHANNELS][LANES];
+  LANE_ARRAY int steps[LANES];
+} Hot;
+
+// Takes a path out of the packet, and puts it back.
+static void take_path(const Hot* hot, int lane, Path* path) {
+  path->now.ray = take_ray(&hot->rays, lane);
+  path->now.weight = lane_colour(hot->weight, lane);
+  path->gathered = lane_colour(hot->gathered, lane);
+  path->steps = hot->steps[lane];
+  path->room = room_around(&hot->rays, lane, path->now.ray.x);
+}
+
+static void put_path(Hot* hot, int lane, const Path* path, const Medium* medium, float step_size) {
+  if (path->index < 0) {
+    clear_lane(&hot->rays, lane);
+    return;
+  }
+  put_ray(&hot->rays, lane, medium, &path->now.ray, step_size, path->room);
+  set_lane_colour(path->now.weight, hot->weight, lane);
+  set_lane_colour(path->gathered, hot->gathered, lane);
+  hot->steps[lane] = path->steps;
+}
 
 #if TURBID_CHANNELS == 3
 static float3 colour_rgb(Colour c) { return c.xyz; }
@@ -71,18 +97,11 @@ static void split(Path* path, float3 normal, float eta_from, float eta_to, int n
   if (path->stacked < room && colour_max(weaker.weight) >= min_weight) path->stack[path->stacked++] = weaker;
 }
 
-// Nothing is known of where the branch is.
-static void forget_place(Place* place) {
-  place->block = -1;
-  place->room = 0.0f;
-  place->least_room = 1.0f;
-}
-
 // The branch has ended: the one stacked last goes on, or the sample is done.
 static void next_branch(Path* path, const ViewParams* p, global float* radiance) {
   if (path->stacked > 0) {
     path->now = path->stack[--path->stacked];
-    forget_place(&path->place);
+    path->room = 0.0f;
     return;
   }
   global float* at = radiance + 8 * path->index;
@@ -102,7 +121,7 @@ static void begin(Path* path, const Medium* medium, const Surroundings* around, 
   path->surfaces = (float3)(0.0f);
   path->gathered = colour_of(0.0f, 0.0f, 0.0f);
   path->steps = path->met = path->stacked = 0;
-  forget_place(&path->place);
+  path->room = 0.0f;
   if (sample->region < 0) {
     path->surfaces = surroundings_radiance(around, p, start, direction);
     next_branch(path, p, radiance);
@@ -158,7 +177,7 @@ static bool step_with_care(Path* path, const Medium* medium, const Surroundings*
   Branch* branch = &path->now;
   const int region = branch->ray.region;
   const float3 from = branch->ray.x;
-  const Step step = advance(medium, &branch->ray, p->step, path->place.room);
+  const Step step = advance(medium, &branch->ray, p->step, path->room);
   const float3 heading = (branch->ray.x - from) / fmax(step.length, 1e-9f);
   if (region == 0 && p->ground) {
     const float t = distance_to_ground(p, from, heading);
@@ -181,56 +200,69 @@ static bool step_with_care(Path* path, const Medium* medium, const Surroundings*
     return false;
   }
   if (step.event == EVENT_SURFACE && !meet_surface(path, medium, around, p, &step)) return false;
-  look_around(medium, &branch->ray, p->step, step.event == EVENT_NONE ? step.room : 0.0f, &path->place);
-  if (p->ground && branch->ray.region == 0) {
-    path->place.room = fmin(path->place.room, fabs(branch->ray.x.y - p->ground_height) - 0.01f);
-  }
+  path->room = step.event == EVENT_NONE ? step.room : 0.0f;
   return true;
 }
 
+// What a work-item has claimed of the samples.
+typedef struct {
+  int next, end;
+} Claim;
+
+// Begins the next samples until one has a path to follow, or none is left.
+static void begin_next(Path* path, Claim* claim, const Medium* medium, const Surroundings* around, const ViewParams* p,
+                       const global ViewSample* samples, global int* claims, global float* radiance) {
+  while (path->index < 0) {
+    if (claim->next == claim->end) {
+      claim->next = min(atomic_add(claims, TURBID_SAMPLES_PER_CLAIM), p->sample_count);
+      claim->end = min(claim->next + TURBID_SAMPLES_PER_CLAIM, p->sample_count);
+      if (claim->next == claim->end) return;
+    }
+    begin(path, medium, around, p, samples + claim->next, claim->next, radiance);
+    ++claim->next;
+  }
+}
+
 // Work-items claim samples a few at a time until none is left; `claims` counts from 0 in each launch.
-kernel void view(MEDIUM_ARGUMENTS, ViewParams p, const global ViewSample* samples, global int* claims,
+kernel void view(MEDIUM_ARGUMENTS, const global int4* region_tiles, ViewParams p, const global ViewSample* samples, global int* claims,
                  const global float* source_tiles, const global LightParams* lights, const global float* shadow_depths,
                  const global float* transmittance, const global float* ground_map, global float* radiance) {
   const Medium medium = MEDIUM_FROM_ARGUMENTS;
   const Surroundings around = {lights, shadow_depths, transmittance, ground_map};
-  Path paths[TURBID_INTERLEAVE];
-  for (int i = 0; i < TURBID_INTERLEAVE; ++i) paths[i].index = -1;
-  int claimed = 0, claim_end = 0;
-  bool busy = true;
-  while (busy) {
-    busy = false;
-    for (int i = 0; i < TURBID_INTERLEAVE; ++i) {
+  Path paths[LANES];
+  Hot hot;
+  Claim claim = {0, 0};
+  for (int i = 0; i < LANES; ++i) {
+    paths[i].index = -1;
+    clear_lane(&hot.rays, i);
+    begin_next(paths + i, &claim, &medium, &around, &p, samples, claims, radiance);
+    put_path(&hot, i, paths + i, &medium, p.step);
+  }
+  while (true) {
+    const Ints alive = MASK(LOAD(hot.rays.region) >= 0);
+    if (!any_of(alive)) break;
+    const Ints wanted = alive & MASK(LOAD(hot.steps) < p.max_steps);
+    STORE(LOAD(hot.steps) - wanted, hot.steps);  // a mask is -1
+    Strides strides;
+    const Ints gone = glide(&medium, region_tiles, &hot.rays, wanted, p.step, p.ground, p.ground_height, &strides);
+    Ints ended = alive & ~wanted;
+    if (any_of(gone & LOAD(hot.rays.participates))) {
+      ended |= gather_all(&medium, &hot.rays, &strides, gone, source_tiles, p.min_weight, hot.gathered[0], hot.weight[0]);
+    }
+    const Ints waiting = (alive & ~gone) | ended;
+    if (!any_of(waiting)) continue;
+    LANE_ARRAY int waits[LANES], ends[LANES];
+    STORE(waiting, waits);
+    STORE(ended, ends);
+    for (int i = 0; i < LANES; ++i) {
+      if (!waits[i]) continue;
       Path* path = paths + i;
-      if (path->index < 0) {
-        if (claimed == claim_end) {
-          claimed = min(atomic_add(claims, TURBID_SAMPLES_PER_CLAIM), p.sample_count);
-          claim_end = min(claimed + TURBID_SAMPLES_PER_CLAIM, p.sample_count);
-          if (claimed == claim_end) continue;
-        }
-        begin(path, &medium, &around, &p, samples + claimed, claimed, radiance);
-        ++claimed;
-        busy = true;
-        continue;
+      take_path(&hot, i, path);
+      if (ends[i] || !step_with_care(path, &medium, &around, &p, source_tiles)) {
+        next_branch(path, &p, radiance);
+        begin_next(path, &claim, &medium, &around, &p, samples, claims, radiance);
       }
-      busy = true;
-      bool goes_on = path->steps < p.max_steps;
-      if (goes_on) {
-        ++path->steps;
-        Stride stride;
-        Branch* branch = &path->now;
-        if (glide(&medium, &branch->ray, &path->place, p.step, &stride)) {
-          const int region = branch->ray.region;
-          if (medium.regions[region].source_set < 0 && !medium.regions[region].attenuates) continue;
-          const Extinction sigma = extinction_in(&medium, region, path->place.coefficient_tile, stride.cell);
-          const Colour source = source_in(source_tiles, path->place.source_tile, stride.cell);
-          gather(&path->gathered, &branch->weight, sigma, source, stride.length, stride.eta_squared);
-          goes_on = colour_max(branch->weight) >= p.min_weight;
-        } else {
-          goes_on = step_with_care(path, &medium, &around, &p, source_tiles);
-        }
-      }
-      if (!goes_on) next_branch(path, &p, radiance);
+      put_path(&hot, i, path, &medium, p.step);
     }
   }
 }

@@ -215,10 +215,11 @@ Goal view_goal(cl::Session& session, int voxels, int repeats) {
     theirs.push_back(reference);
   }
   double squares = 0, all = 0;
-  for (std::size_t i = 0; i < image.scattered.size(); ++i) {
+  for (int i = 0; i < image.width * image.height; ++i) {
+    const float* theirs_at = radiance.data() + 4 * strip.index(i % image.width, i / image.width);
     for (int c = 0; c < 3; ++c) {
-      squares += std::pow(static_cast<double>(image.scattered[i][c]) - radiance[4 * i + c], 2);
-      all += std::pow(static_cast<double>(radiance[4 * i + c]), 2);
+      squares += std::pow(static_cast<double>(image.scattered[i][c]) - theirs_at[c], 2);
+      all += std::pow(static_cast<double>(theirs_at[c]), 2);
     }
   }
   Goal goal;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// GCC's vectors: four lanes hold a point or a colour, eight the two x-neighbours of a node; AVX2 and AVX-512 where the
-// machine has them. Threads claim rays 64 at a time, as the kernels do.
+// GCC's vectors. Sixteen rays go in step: positions, velocities and weights stand component by component, one lane per ray, so
+// that a 512-bit instruction serves all of them; only the corners of a cell are loaded ray by ray, the two x-neighbours and
+// all four components of a node at once. Threads claim rays 64 at a time, as the kernels do.
 #include "host/bench/reference_march.h"
 
 #include <algorithm>
@@ -12,11 +13,12 @@
 namespace turbid::reference {
 namespace {
 
-typedef float Four __attribute__((vector_size(16)));
-typedef int Four32 __attribute__((vector_size(16)));
-typedef float Eight __attribute__((vector_size(32)));
+constexpr int kLanes = 16, kClaim = 64;
 
-constexpr int kInterleave = 8, kClaim = 64;
+typedef float Four __attribute__((vector_size(16)));
+typedef float Eight __attribute__((vector_size(32)));
+typedef float Lanes __attribute__((vector_size(4 * kLanes)));
+typedef int Lanes32 __attribute__((vector_size(4 * kLanes)));
 
 template <class V>
 V load(const float* from) {
@@ -24,110 +26,167 @@ V load(const float* from) {
   std::memcpy(&value, from, sizeof value);
   return value;
 }
-Four low(Eight v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); }
-Four high(Eight v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }
-Four three(const float* v) { return Four{v[0], v[1], v[2], 0.0f}; }
-float dot(Four a, Four b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-float largest(Four v) { return std::max(v[0], std::max(v[1], v[2])); }
 
-Four interpolate(const float* at, int n, Four f) {
-  const Eight a = load<Eight>(at), b = load<Eight>(at + 4 * n);
-  const Eight c = load<Eight>(at + 4 * n * n), d = load<Eight>(at + 4 * (n * n + n));
-  const Eight near = a + f[2] * (c - a), far = b + f[2] * (d - b);
-  const Eight row = near + f[1] * (far - near);
-  return low(row) + f[0] * (high(row) - low(row));
+Lanes least(Lanes a, Lanes b) { return a < b ? a : b; }
+Lanes greatest(Lanes a, Lanes b) { return a > b ? a : b; }
+Lanes root(Lanes a) {
+  for (int i = 0; i < kLanes; ++i) a[i] = std::sqrt(a[i]);
+  return a;
+}
+bool any(Lanes32 mask) {
+  const auto eight = __builtin_shufflevector(mask, mask, 0, 1, 2, 3, 4, 5, 6, 7) |
+                     __builtin_shufflevector(mask, mask, 8, 9, 10, 11, 12, 13, 14, 15);
+  const auto four = __builtin_shufflevector(eight, eight, 0, 1, 2, 3) | __builtin_shufflevector(eight, eight, 4, 5, 6, 7);
+  long both[2];
+  std::memcpy(both, &four, sizeof both);
+  return (both[0] | both[1]) != 0;
+}
+
+/// The cells that sixteen points lie in.
+struct Cells {
+  int node[kLanes];  ///< lowest corner, in floats
+  float fraction[3][kLanes];
+};
+
+/// Trilinear values of four components each; turned so that every component has its lanes.
+void interpolate(const std::vector<float>& grid, int n, const Cells& cells, Lanes out[4]) {
+  Four value[kLanes];
+#pragma GCC unroll 16
+  for (int i = 0; i < kLanes; ++i) {
+    const float* at = grid.data() + cells.node[i];
+    const Eight a = load<Eight>(at), b = load<Eight>(at + 4 * n);
+    const Eight c = load<Eight>(at + 4 * n * n), d = load<Eight>(at + 4 * (n * n + n));
+    const Eight near = a + cells.fraction[2][i] * (c - a), far = b + cells.fraction[2][i] * (d - b);
+    const Eight row = near + cells.fraction[1][i] * (far - near);
+    const Four low = __builtin_shufflevector(row, row, 0, 1, 2, 3), high = __builtin_shufflevector(row, row, 4, 5, 6, 7);
+    value[i] = low + cells.fraction[0][i] * (high - low);
+  }
+  const float* values = reinterpret_cast<const float*>(value);
+  const Lanes p = load<Lanes>(values), q = load<Lanes>(values + 16), r = load<Lanes>(values + 32), s = load<Lanes>(values + 48);
+#define TURBID_HALVES(x, y, k) __builtin_shufflevector(x, y, k, k + 4, k + 8, k + 12, k + 16, k + 20, k + 24, k + 28, \
+                                                       k, k + 4, k + 8, k + 12, k + 16, k + 20, k + 24, k + 28)
+#define TURBID_COMPONENT(k) __builtin_shufflevector(TURBID_HALVES(p, q, k), TURBID_HALVES(r, s, k), 0, 1, 2, 3, 4, 5, 6, 7, \
+                                                    16, 17, 18, 19, 20, 21, 22, 23)
+  out[0] = TURBID_COMPONENT(0);
+  out[1] = TURBID_COMPONENT(1);
+  out[2] = TURBID_COMPONENT(2);
+  out[3] = TURBID_COMPONENT(3);
+#undef TURBID_COMPONENT
+#undef TURBID_HALVES
 }
 
 /// (1 - exp(-x)) / x, as kernels/lib/attenuation.h.
-Four mean_transmittance(Four x) {
-  Four mean = 1.0f / 720.0f - x * (1.0f / 5040.0f - x * (1.0f / 40320.0f));
+Lanes mean_transmittance(Lanes x) {
+  Lanes mean = 1.0f / 720.0f - x * (1.0f / 5040.0f - x * (1.0f / 40320.0f));
   mean = 0.5f - x * (1.0f / 6.0f - x * (1.0f / 24.0f - x * (1.0f / 120.0f - x * mean)));
   mean = 1.0f - x * mean;
-  if (largest(x) > 0.5f) {
-    for (int c = 0; c < 3; ++c) {
-      if (x[c] > 0.5f) mean[c] = -std::expm1(-x[c]) / x[c];
+  if (any(x > 0.5f)) [[unlikely]] {
+    for (int i = 0; i < kLanes; ++i) {
+      if (x[i] > 0.5f) mean[i] = -std::expm1(-x[i]) / x[i];
     }
   }
   return mean;
 }
 
-struct Lane {
-  Four x, v, weight, gathered;
-  std::ptrdiff_t ray = -1;
+/// Sixteen rays under way.
+struct Packet {
+  Lanes x[3], v[3], weight[3], gathered[3];
+  Lanes32 alive;
 };
 
-/// One step; false when the ray has ended. Gathering and marching differ in what a segment is good for.
+/// One step of all rays; true in the lanes of rays that end with it. Gathering and marching differ in what a segment is good
+/// for.
 template <bool gathering>
-bool advance(const RayMedium& m, Lane& lane, float step, float min_weight) {
+Lanes32 advance(const RayMedium& m, Packet& p, float step, float min_weight) {
   const int n = m.n;
   const float dtau = step * m.tau_per_arc, size = static_cast<float>(n), last = static_cast<float>(n - 1);
-  const Four middle = lane.x + 0.5f * dtau * lane.v;
-  const Four zero{}, top{last, last, last, last};
-  Four y = middle - 0.5f;
-  y = y < zero ? zero : y;
-  y = y > top ? top : y;
-  Four32 i = __builtin_convertvector(y, Four32);
-  const Four32 cells{n - 2, n - 2, n - 2, 0};
-  i = i > cells ? cells : i;
-  const Four f = y - __builtin_convertvector(i, Four);
-  const std::size_t node = 4 * (i[0] + static_cast<std::size_t>(n) * (i[1] + n * i[2]));
-  Four u = interpolate(m.index.data() + node, n, f);
-  u[3] = 0.0f;
-  const Four v = lane.v + dtau * u;
-  const Four to = middle + 0.5f * dtau * v;
-  const Four mean = 0.5f * (lane.v + v);
-  const float eta_squared = dot(mean, mean);
-  float length = dtau * std::sqrt(eta_squared);
-  const bool inside = to[0] >= 0 && to[1] >= 0 && to[2] >= 0 && to[0] <= size && to[1] <= size && to[2] <= size;
-  if (!inside) {
-    float part = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float from = lane.x[axis], d = to[axis] - from;
-      if (to[axis] < 0) part = std::min(part, std::max(-from / d, 0.0f));
-      if (to[axis] > size) part = std::min(part, std::max((size - from) / d, 0.0f));
+  Lanes middle[3];
+  Lanes32 cell[3];
+  Cells cells;
+  for (int a = 0; a < 3; ++a) {
+    middle[a] = p.x[a] + 0.5f * dtau * p.v[a];
+    const Lanes y = least(greatest(middle[a] - 0.5f, Lanes{}), Lanes{} + last);
+    const Lanes32 i = __builtin_convertvector(y, Lanes32);
+    cell[a] = i < n - 2 ? i : Lanes32{} + (n - 2);
+    const Lanes f = y - __builtin_convertvector(cell[a], Lanes);
+    std::memcpy(cells.fraction[a], &f, sizeof f);
+  }
+  const Lanes32 node = 4 * (cell[0] + n * (cell[1] + n * cell[2]));
+  std::memcpy(cells.node, &node, sizeof node);
+  Lanes u[4];
+  interpolate(m.index, n, cells, u);
+  Lanes eta_squared{}, to[3];
+  Lanes32 outside{};
+  for (int a = 0; a < 3; ++a) {
+    const Lanes v = p.v[a] + dtau * u[a], mean = 0.5f * (p.v[a] + v);
+    to[a] = middle[a] + 0.5f * dtau * v;
+    eta_squared += mean * mean;
+    p.v[a] = v;
+    outside |= (to[a] < 0.0f) | (to[a] > size);
+  }
+  Lanes length = dtau * root(eta_squared);
+  if (any(outside)) [[unlikely]] {
+    Lanes part = Lanes{} + 1.0f;
+    for (int a = 0; a < 3; ++a) {
+      const Lanes d = to[a] - p.x[a];
+      part = to[a] < 0.0f ? least(part, greatest(-p.x[a] / d, Lanes{})) : part;
+      part = to[a] > size ? least(part, greatest((size - p.x[a]) / d, Lanes{})) : part;
     }
     length *= part;
   }
-  const Four depth = (load<Four>(m.sigma_s.data()) + load<Four>(m.sigma_a.data())) * length;
-  const Four share = lane.weight * mean_transmittance(depth);
-  if constexpr (gathering) {
-    const Four source = interpolate(m.source.data() + node, n, f);
-    lane.gathered += share * source * (length * 0.0795774715f / eta_squared);
+  Lanes source[4], heaviest{};
+  if constexpr (gathering) interpolate(m.source, n, cells, source);
+  for (int c = 0; c < 3; ++c) {
+    const Lanes depth = (m.sigma_s[c] + m.sigma_a[c]) * length;
+    const Lanes share = p.weight[c] * mean_transmittance(depth);
+    if constexpr (gathering) p.gathered[c] += share * source[c] * (length * 0.0795774715f / eta_squared);
+    p.weight[c] -= share * depth;
+    heaviest = greatest(heaviest, p.weight[c]);
   }
-  lane.weight -= share * depth;
-  lane.x = to;
-  lane.v = v;
-  return inside && (!gathering || largest(lane.weight) >= min_weight);
+  for (int a = 0; a < 3; ++a) p.x[a] = to[a];
+  if constexpr (gathering) outside |= heaviest < min_weight;
+  return outside & p.alive;
 }
 
-/// All rays on all threads; `end(thread, lane)` takes an ended ray's result.
+/// All rays on all threads; `end(thread, ray, packet, lane)` takes an ended ray's result.
 template <bool gathering, class End>
 std::int64_t follow(const RayMedium& m, const std::vector<RayStart>& rays, float step, float min_weight, int threads,
                     const End& end) {
   std::atomic<std::size_t> claims{0};
   std::vector<std::int64_t> steps(threads, 0);
   const auto work = [&](int thread) {
-    Lane lanes[kInterleave];
-    std::size_t next = 0, last = 0;
+    Packet p{};
+    std::size_t ray[kLanes], next = 0, last = 0;
+    const auto begin = [&](int lane) {
+      if (next == last) {
+        next = std::min(claims.fetch_add(kClaim), rays.size());
+        last = std::min(next + kClaim, rays.size());
+      }
+      const bool more = next < last;
+      const RayStart nothing{{1, 1, 1}, {0, 0, 0}, {0, 0, 0, 0}};
+      const RayStart& start = more ? rays[next] : nothing;
+      for (int a = 0; a < 3; ++a) {
+        p.x[a][lane] = start.position[a];
+        p.v[a][lane] = start.velocity[a];
+        p.weight[a][lane] = start.power[a];
+        p.gathered[a][lane] = 0;
+      }
+      p.alive[lane] = more ? -1 : 0;
+      ray[lane] = next;
+      if (more) ++next;
+      return more;
+    };
+    int alive = 0;
+    for (int lane = 0; lane < kLanes; ++lane) alive += begin(lane);
     std::int64_t done = 0;
-    for (bool busy = true; busy;) {
-      busy = false;
-      for (Lane& lane : lanes) {
-        if (lane.ray < 0) {
-          if (next == last) {
-            next = std::min(claims.fetch_add(kClaim), rays.size());
-            last = std::min(next + kClaim, rays.size());
-            if (next == last) continue;
-          }
-          const RayStart& start = rays[next];
-          lane = {three(start.position), three(start.velocity), load<Four>(start.power), Four{},
-                  static_cast<std::ptrdiff_t>(next++)};
-        }
-        busy = true;
-        ++done;
-        if (advance<gathering>(m, lane, step, min_weight)) continue;
-        end(thread, lane);
-        lane.ray = -1;
+    while (alive > 0) {
+      done += alive;
+      const Lanes32 ended = advance<gathering>(m, p, step, min_weight);
+      if (!any(ended)) continue;
+      for (int lane = 0; lane < kLanes; ++lane) {
+        if (!ended[lane]) continue;
+        end(thread, ray[lane], p, lane);
+        if (!begin(lane)) --alive;
       }
     }
     steps[thread] = done;
@@ -144,15 +203,16 @@ std::int64_t follow(const RayMedium& m, const std::vector<RayStart>& rays, float
 }  // namespace
 
 MarchSums march_rays(const RayMedium& medium, const std::vector<RayStart>& rays, float step, int threads) {
-  std::vector<MarchSums> parts(threads);
+  struct alignas(64) Part : MarchSums {};  // a cache line for each thread
+  std::vector<Part> parts(threads);
   MarchSums sums;
-  sums.steps = follow<false>(medium, rays, step, 0.0f, threads, [&](int thread, const Lane& lane) {
+  sums.steps = follow<false>(medium, rays, step, 0.0f, threads, [&](int thread, std::size_t ray, const Packet& p, int lane) {
     for (int c = 0; c < 3; ++c) {
-      parts[thread].escaped[c] += lane.weight[c];
-      parts[thread].absorbed[c] += static_cast<double>(rays[lane.ray].power[c]) - lane.weight[c];
+      parts[thread].escaped[c] += p.weight[c][lane];
+      parts[thread].absorbed[c] += static_cast<double>(rays[ray].power[c]) - p.weight[c][lane];
     }
   });
-  for (const MarchSums& part : parts) {
+  for (const Part& part : parts) {
     for (int c = 0; c < 3; ++c) {
       sums.escaped[c] += part.escaped[c];
       sums.absorbed[c] += part.absorbed[c];
@@ -164,8 +224,8 @@ MarchSums march_rays(const RayMedium& medium, const std::vector<RayStart>& rays,
 std::int64_t gather_rays(const RayMedium& medium, const std::vector<RayStart>& rays, float step, float min_weight,
                          int threads, std::vector<float>* radiance) {
   radiance->assign(4 * rays.size(), 0.0f);
-  return follow<true>(medium, rays, step, min_weight, threads, [&](int, const Lane& lane) {
-    std::memcpy(radiance->data() + 4 * lane.ray, &lane.gathered, sizeof lane.gathered);
+  return follow<true>(medium, rays, step, min_weight, threads, [&](int, std::size_t ray, const Packet& p, int lane) {
+    for (int c = 0; c < 3; ++c) (*radiance)[4 * ray + c] = p.gathered[c][lane];
   });
 }
 

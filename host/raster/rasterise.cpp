@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "host/base/errors.h"
+#include "host/base/parallel.h"
 #include "host/raster/osmesa_context.h"
 #include "host/raster/pixel_hit.h"
 #include "host/raster/raster.h"
@@ -157,17 +158,19 @@ RasterImage rasterise(std::span<const RasterMesh> meshes, const RasterView& view
       numbers.resize(std::size_t(tile.width) * std::size_t(tile.height));
       target.read(tile.width, tile.height, numbers.data());
       const PixelResolver resolver(table, tile, numbers);
-      for (int y = 0; y < tile.height; ++y)
-        for (int x = 0; x < tile.width; ++x) {
-          std::uint32_t number = numbers[std::size_t(y) * tile.width + x];
-          if (number == 0) continue;
-          const Ray ray = rays.at(left + x, top + y);
-          const Hit hit = resolver.resolve(ray, x, y, number);
-          if (number == 0) continue;
-          const std::size_t mesh = table.mesh_of(number);
-          store_hit(image, std::size_t(top + y) * view.width + (left + x), ray, hit, meshes[mesh],
-                    number - table.first[mesh]);
-        }
+      parallel_ranges(tile.height, [&](int begin, int end) {
+        for (int y = begin; y < end; ++y)
+          for (int x = 0; x < tile.width; ++x) {
+            std::uint32_t number = numbers[std::size_t(y) * tile.width + x];
+            if (number == 0) continue;
+            const Ray ray = rays.at(left + x, top + y);
+            const Hit hit = resolver.resolve(ray, x, y, number);
+            if (number == 0) continue;
+            const std::size_t mesh = table.mesh_of(number);
+            store_hit(image, std::size_t(top + y) * view.width + (left + x), ray, hit, meshes[mesh],
+                      number - table.first[mesh]);
+          }
+      });
     }
   return image;
 }

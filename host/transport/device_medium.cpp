@@ -123,6 +123,25 @@ void copy(const glm::vec3& from, float (&to)[n]) {
   for (int i = 0; i < 3; ++i) to[i] = from[i];
 }
 
+/// What rays look up of the block that they are in, in one place.
+std::vector<int> region_tiles(const DeviceMedium& device) {
+  std::vector<int> tiles;
+  for (const RegionParams& region : device.region_params) {
+    for (int block = 0; block < device.block_count(); ++block) {
+      for (int set : {region.index_set, region.coefficient_set, region.source_set}) {
+        tiles.push_back(set < 0 ? -1 : device.tile_map[static_cast<std::size_t>(set) * device.block_count() + block]);
+      }
+      tiles.push_back(device.block_region[block]);
+    }
+  }
+  return tiles;
+}
+
+/// Room for tiles; where rays read any, there is a first one, which stands in for those that are missing.
+std::vector<float> room_for(int tiles, bool read, int width) {
+  return std::vector<float>(static_cast<std::size_t>(read ? std::max(tiles, 1) : tiles) * kTileNodes * width);
+}
+
 }  // namespace
 
 std::vector<cl::Define> DeviceMedium::defines() const {
@@ -196,7 +215,7 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
     if (region.smooth_surface) smooth_set = params.index_set;
     index_sets.emplace_back(r, params.index_set);
   }
-  std::vector<float> indices(static_cast<std::size_t>(index_tiles) * kTileNodes * 4);
+  std::vector<float> indices = room_for(index_tiles, features.graded_index, 4);
   for (const auto& [r, set] : index_sets) {
     for_each_tile(maps, set, block_count, [&, reader = r](int block, int tile) {
       std::vector<float> halo(halo_nodes(kIndexHalo));
@@ -215,7 +234,7 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
             ? maps.add(presence(r, body_state, block_count), &coefficient_tiles)
             : -1;
   }
-  std::vector<float> coefficients(static_cast<std::size_t>(coefficient_tiles) * kTileNodes * width);
+  std::vector<float> coefficients = room_for(coefficient_tiles, features.heterogeneous, width);
   for (int r = 0; r < regions; ++r) {
     const int set = device.region_params[r].coefficient_set;
     if (set < 0) continue;
@@ -274,6 +293,7 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
 
   device.regions_buffer = session.upload(device.region_params);
   device.tile_map_buffer = session.upload(device.tile_map);
+  device.region_tiles = session.upload(region_tiles(device));
   device.block_region_buffer = session.upload(device.block_region);
   device.distance_tiles = session.upload(distances);
   device.index_tiles = session.upload(indices);

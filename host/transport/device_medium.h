@@ -26,6 +26,7 @@ struct DeviceMedium {
 
   cl::Buffer<RegionParams> regions_buffer;
   cl::Buffer<int> tile_map_buffer, block_region_buffer;
+  cl::Buffer<int> region_tiles;          ///< [region][block][4]: tiles of index, coefficients, source; block_region
   cl::Buffer<float> distance_tiles, index_tiles, coefficient_tiles;
 
   int block_count() const { return frame.blocks().x * frame.blocks().y * frame.blocks().z; }

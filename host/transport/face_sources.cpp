@@ -2,8 +2,6 @@
 // See face_sources.h.
 #include "host/transport/face_sources.h"
 
-#include <algorithm>
-
 namespace turbid {
 namespace {
 
@@ -11,13 +9,21 @@ constexpr std::size_t kVoxels = 512;
 
 }  // namespace
 
-const BoundaryFace* BoundaryIndex::find(std::size_t at, int face) const {
+BoundaryIndex::BoundaryIndex(const DiffusionMedium& medium) : medium_(medium), first_(medium.stride(), -1) {
   // make_diffusion_medium lists them by block, voxel and face.
-  const auto key = [](const BoundaryFace& f) { return 6 * (f.block * kVoxels + f.voxel) + f.face; };
-  const std::size_t wanted = 6 * at + face;
-  const auto found = std::lower_bound(medium_.boundary.begin(), medium_.boundary.end(), wanted,
-                                      [&](const BoundaryFace& f, std::size_t value) { return key(f) < value; });
-  return found != medium_.boundary.end() && key(*found) == wanted ? &*found : nullptr;
+  for (std::size_t i = medium.boundary.size(); i-- > 0;) {
+    first_[medium.boundary[i].block * kVoxels + medium.boundary[i].voxel] = static_cast<std::int32_t>(i);
+  }
+}
+
+const BoundaryFace* BoundaryIndex::find(std::size_t at, int face) const {
+  if (first_[at] < 0) return nullptr;
+  const BoundaryFace* found = medium_.boundary.data() + first_[at];
+  const BoundaryFace* end = medium_.boundary.data() + medium_.boundary.size();
+  for (; found < end && found->block * kVoxels + found->voxel == at; ++found) {
+    if (found->face == face) return found;
+  }
+  return nullptr;
 }
 
 void add_first_moment(const DiffusionMedium& medium, const std::vector<double>& flux, std::vector<double>& power,

@@ -13,12 +13,13 @@ namespace turbid {
 /// Finds the boundary faces of a voxel.
 class BoundaryIndex {
  public:
-  explicit BoundaryIndex(const DiffusionMedium& medium) : medium_(medium) {}
+  explicit BoundaryIndex(const DiffusionMedium&);
   /// `at`: of [block][voxel]; null if light does not leave for good through that face (0..5: -x, +x, ...).
   const BoundaryFace* find(std::size_t at, int face) const;
 
  private:
   const DiffusionMedium& medium_;
+  std::vector<std::int32_t> first_;  // of each voxel's faces in the medium's list; -1: it has none
 };
 
 /// Power that goes out through boundary faces without ever being a voxel's source [W per channel].
@@ -27,6 +28,10 @@ struct LeftAtOnce {
   glm::dvec3 absorbed_opaque{0};
   void add(const BoundaryFace& face, int channel, double watts) {
     (face.opaque ? absorbed_opaque : escaped[face.face])[channel] += watts;
+  }
+  void add(const LeftAtOnce& other) {
+    for (int face = 0; face < 6; ++face) escaped[face] += other.escaped[face];
+    absorbed_opaque += other.absorbed_opaque;
   }
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kRaysPerLaunch = 1 << 14;  // Ctrl-C is answered between launches
 // Where the loop shape is a CPU's: rays that a work-item interleaves, and rays that it takes at a time.
-constexpr int kInterleave = 8, kRaysPerClaim = 64;
+constexpr int kInterleave = 16, kRaysPerClaim = 64;
 constexpr std::size_t kOwnSumsShare = 8;  // of the device's memory, at the most, goes to work-items' own sums
 constexpr int kGroundTexels = 768;     // at the most, per side
 constexpr float kGroundReach = 3.0f;  // the collecting map spans this many domain sizes
@@ -119,7 +119,7 @@ void March::enqueue_piece() {
   const std::size_t items = device.cpu ? workers_ : rays;
   kernel_.enqueue(queue, {items}, {device.cpu ? std::size_t{1} : std::size_t{64}}, medium_.regions_buffer,
                   medium_.tile_map_buffer, medium_.block_region_buffer, medium_.distance_tiles, medium_.index_tiles,
-                  medium_.coefficient_tiles, params_, rays_, next_, next_count_, claims_,
+                  medium_.coefficient_tiles, medium_.region_tiles, params_, rays_, next_, next_count_, claims_,
                   volumes_ > 0 ? own_sums_ : deposit_, flux_, tallies_, ground_, ground_rays_, transmitted_);
   cl::check(clFlush(queue.get()), "starting the march");
 }
@@ -136,13 +136,15 @@ bool March::finish_batch(const std::function<void()>& between) {
   return ray_count_ > 0;
 }
 
-std::vector<std::int64_t> March::read_deposit() {
+const std::vector<std::int64_t>& March::read_deposit() {
   cl::Queue& queue = session_.march_queue();
   if (volumes_ > 0) {
     const int nodes = params_.own_nodes;
     sum_deposits_.enqueue(queue, {static_cast<std::size_t>(nodes)}, {64}, own_sums_, deposit_, volumes_, nodes);
   }
-  return session_.read(queue, deposit_);
+  read_.resize(deposit_.count());
+  session_.read(queue, deposit_, std::span<std::int64_t>(read_));
+  return read_;
 }
 
 std::vector<std::int64_t> March::read_flux() { return session_.read(session_.march_queue(), flux_); }

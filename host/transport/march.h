@@ -33,7 +33,7 @@ class March {
   int batches() const { return batches_; }
 
   /// Deposits in watts on the nodes of the source tiles: [tile][node][channel].
-  std::vector<std::int64_t> read_deposit();
+  const std::vector<std::int64_t>& read_deposit();
   /// Where phase functions are anisotropic: the deposits times the direction of the light, [axis][tile][node][channel];
   /// empty elsewhere.
   std::vector<std::int64_t> read_flux();
@@ -53,7 +53,7 @@ class March {
   MarchParams params_{};
   cl::Program program_;
   cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>,
-             cl::Buffer<float>, MarchParams, cl::Buffer<RayState>, cl::Buffer<RayState>, cl::Buffer<int>,
+             cl::Buffer<float>, cl::Buffer<int>, MarchParams, cl::Buffer<RayState>, cl::Buffer<RayState>, cl::Buffer<int>,
              cl::Buffer<int>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>,
              cl::Buffer<std::int64_t>, cl::Buffer<int>, cl::Buffer<std::int64_t>>
       kernel_;
@@ -65,6 +65,7 @@ class March {
   cl::Buffer<std::int64_t> own_sums_;  ///< [volume][node][4, or 1 where the scene is grey]
   cl::Buffer<std::int64_t> deposit_, flux_, tallies_, ground_, transmitted_;
   std::size_t ray_count_ = 0;
+  std::vector<std::int64_t> read_;  ///< what read_deposit gave last
   int batches_ = 0;
   double fixed_per_watt_ = 1;
 };

@@ -20,48 +20,70 @@ struct Patch {
   static int index(int x, int y, int z) { return x + kPatch * (y + kPatch * z); }
 };
 
-/// Values of a region's own voxels around a tile.
-void load(Patch& patch, const SourceTile& tile, const FluenceVolume& volume, const MediumVolume& medium, float h) {
-  const glm::ivec3 lower = 8 * tile.block - kHalo, size(kPatch);
-  const Region& region = medium.region(tile.region);
-  std::vector<int> owner(kPatchVoxels);
-  medium.read_owner(lower, size, owner);
-  std::vector<Coefficients> varying;
-  if (region.heterogeneous) {
-    varying.resize(kPatchVoxels);
-    medium.read_coefficients(tile.region, lower, size, varying);
-  }
+/// The source of every active voxel, and whose it is: [block][voxel].
+struct VoxelSources {
+  std::vector<glm::vec3> value;
+  std::vector<std::int16_t> region;
+};
+
+VoxelSources voxel_sources(const FluenceVolume& volume, const MediumVolume& medium, float h) {
   const std::size_t stride = volume.colour_stride();
-  for (int z = 0, i = 0; z < kPatch; ++z) {
-    for (int y = 0; y < kPatch; ++y) {
-      for (int x = 0; x < kPatch; ++x, ++i) {
-        patch.known[i] = 0;
-        if (owner[i] != tile.region) continue;
-        const glm::ivec3 voxel = lower + glm::ivec3(x, y, z);
-        const int block = volume.blocks.find(voxel / 8);
-        if (block < 0) continue;
-        const glm::ivec3 local = voxel % 8;
-        const std::size_t at = block * std::size_t{512} + local.x + 8 * (local.y + 8 * local.z);
-        Coefficients k{region.sigma_s, region.sigma_a, region.emission, region.g};
-        if (region.heterogeneous) k = varying[i];
-        const glm::vec3 sigma_s = delta_scaled(k.sigma_s, k.g);
-        for (int c = 0; c < 3; ++c) {
-          patch.value[i][c] =
-              h * (sigma_s[c] * volume.fluence[c * stride + at] + volume.deposit[c * stride + at] + k.emission[c]);
+  VoxelSources sources{std::vector<glm::vec3>(stride), std::vector<std::int16_t>(stride)};
+  parallel_ranges(volume.blocks.count(), [&](int begin, int end) {
+    std::vector<int> owner(512);
+    std::vector<Coefficients> varying(512);
+    for (int block = begin; block < end; ++block) {
+      const glm::ivec3 lower = 8 * volume.blocks.coordinates(block), size(8);
+      medium.read_owner(lower, size, owner);
+      int read = -1;  // region that `varying` belongs to
+      for (int r = 0; r < medium.region_count(); ++r) {
+        if (std::find(owner.begin(), owner.end(), r) == owner.end()) continue;
+        const Region& region = medium.region(r);
+        if (region.heterogeneous) medium.read_coefficients(read = r, lower, size, varying);
+        const Coefficients constant{region.sigma_s, region.sigma_a, region.emission, region.g};
+        for (int i = 0; i < 512; ++i) {
+          if (owner[i] != r) continue;
+          const Coefficients& k = read == r ? varying[i] : constant;
+          const glm::vec3 sigma_s = delta_scaled(k.sigma_s, k.g);
+          const std::size_t at = block * std::size_t{512} + i;
+          for (int c = 0; c < 3; ++c) {
+            sources.value[at][c] =
+                h * (sigma_s[c] * volume.fluence[c * stride + at] + volume.deposit[c * stride + at] + k.emission[c]);
+          }
         }
-        patch.known[i] = 1;
+      }
+      std::copy(owner.begin(), owner.end(), sources.region.begin() + block * std::ptrdiff_t{512});
+    }
+  });
+  return sources;
+}
+
+/// Values of a region's own voxels around a tile.
+void load(Patch& patch, const SourceTile& tile, const BlockGrid& grid, const VoxelSources& sources) {
+  int blocks[27];
+  for (int k = 0; k < 27; ++k) blocks[k] = grid.find(tile.block + glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1);
+  for (int z = 0, i = 0; z < kPatch; ++z) {
+    const int vz = z - kHalo + 8;  // from the first of the 27 blocks
+    for (int y = 0; y < kPatch; ++y) {
+      const int vy = y - kHalo + 8;
+      for (int x = 0; x < kPatch; ++x, ++i) {
+        const int vx = x - kHalo + 8, block = blocks[vx / 8 + 3 * (vy / 8) + 9 * (vz / 8)];
+        const std::size_t at = std::max(block, 0) * std::size_t{512} + vx % 8 + 8 * (vy % 8 + 8 * (vz % 8));
+        patch.known[i] = block >= 0 && sources.region[at] == tile.region;
+        if (patch.known[i]) patch.value[i] = sources.value[at];
       }
     }
   }
 }
 
 /// One round: every unknown voxel next to known ones continues their trend, a * (a / b) for values b, a on the way to it,
-/// held between a / 2 and 2 a; averaged over the directions that have it, nearer ones heavier.
-void extrapolate(Patch& patch) {
+/// held between a / 2 and 2 a; averaged over the directions that have it, nearer ones heavier. The outermost `margin` voxels
+/// are left out.
+void extrapolate(Patch& patch, int margin) {
   std::vector<std::pair<int, glm::vec3>> found;
-  for (int z = 0; z < kPatch; ++z) {
-    for (int y = 0; y < kPatch; ++y) {
-      for (int x = 0; x < kPatch; ++x) {
+  for (int z = margin; z < kPatch - margin; ++z) {
+    for (int y = margin; y < kPatch - margin; ++y) {
+      for (int x = margin; x < kPatch - margin; ++x) {
         const int here = Patch::index(x, y, z);
         if (patch.known[here]) continue;
         glm::vec3 sum(0);
@@ -104,14 +126,16 @@ void extrapolate(Patch& patch) {
 
 std::vector<float> make_source_tiles(const FluenceVolume& volume, const MediumVolume& medium, const DeviceMedium& device) {
   const int channels = device.features.channels, width = channels == 3 ? 4 : 1;
-  std::vector<float> tiles(device.source_tiles.size() * TURBID_TILE_NODES * width, 0.0f);
+  // At least one: it stands in where rays find none.
+  std::vector<float> tiles(std::max<std::size_t>(device.source_tiles.size(), 1) * TURBID_TILE_NODES * width, 0.0f);
+  const VoxelSources sources = voxel_sources(volume, medium, device.frame.voxel_size);
   parallel_ranges(static_cast<int>(device.source_tiles.size()), [&](int begin, int end) {
     Patch patch;
     for (int tile = begin; tile < end; ++tile) {
-      load(patch, device.source_tiles[tile], volume, medium, device.frame.voxel_size);
+      load(patch, device.source_tiles[tile], volume.blocks, sources);
       if (std::find(patch.known.begin(), patch.known.end(), 0) != patch.known.end()) {
-        extrapolate(patch);
-        extrapolate(patch);
+        extrapolate(patch, kHalo - 2);  // as far as the second round looks
+        extrapolate(patch, kHalo);
       }
       float* out = tiles.data() + static_cast<std::size_t>(tile) * TURBID_TILE_NODES * width;
       for (int z = 0; z < TURBID_TILE_EDGE; ++z) {

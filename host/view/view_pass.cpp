@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "host/base/parallel.h"
 #include "host/transport/device_medium.h"
 #include "host/transport/light_rays.h"
 #include "host/view/source_tiles.h"
@@ -17,8 +19,8 @@
 namespace turbid {
 namespace {
 
-constexpr int kSamplesPerLaunch = 1 << 16;             // Ctrl-C is answered between launches
-constexpr int kInterleave = 8, kSamplesPerClaim = 64;  // of a CPU's work-item; a GPU's takes one sample
+constexpr int kSamplesPerLaunch = 1 << 16;  // Ctrl-C is answered between launches
+constexpr int kInterleave = 16, kSamplesPerClaim = 64;  // of a CPU's work-item; a GPU's takes one sample
 
 int kind_of(const Light& light) {
   return light.kind == LightKind::directional ? TURBID_LIGHT_DIRECTIONAL
@@ -110,33 +112,38 @@ std::vector<LightParams> make_lights(const ViewInput& in, const VoxelSpace& spac
   return lights;
 }
 
-/// Box filter over a pixel's samples.
-void resolve(const Strip& strip, const std::vector<float>& radiance, int first_row, int last_row, int grid,
-             ViewImage* image) {
-  const int width = image->width;
-  const float weight = 1.0f / static_cast<float>(grid * grid);
-  for (int y = first_row; y < last_row; ++y) {
-    for (int x = 0; x < width; ++x) {
-      glm::vec3 direct(0), scattered(0), normal(0);
-      float coverage = 0, depth = kFarAway;
-      for (int k = 0; k < grid * grid; ++k) {
-        const std::size_t i =
-            static_cast<std::size_t>((y - first_row) * grid + k / grid) * (width * grid) + x * grid + k % grid;
-        direct += weight * glm::vec3(radiance[8 * i], radiance[8 * i + 1], radiance[8 * i + 2]);
-        scattered += weight * glm::vec3(radiance[8 * i + 4], radiance[8 * i + 5], radiance[8 * i + 6]);
-        normal += strip.normal[i];
-        coverage += weight * strip.coverage[i];
-        depth = std::min(depth, strip.depth[i]);
+/// Box filter over a pixel's samples. Returns the steps that were done.
+std::int64_t resolve(const Strip& strip, const std::vector<float>& radiance, int first_row, ViewImage* image) {
+  const float weight = 1.0f / static_cast<float>(strip.per_pixel);
+  std::atomic<std::int64_t> all_steps{0};
+  parallel_ranges(strip.rows, [&](int begin, int end) {
+    std::int64_t steps = 0;
+    for (int row = begin; row < end; ++row) {
+      for (int x = 0; x < strip.width; ++x) {
+        glm::vec3 direct(0), scattered(0), normal(0);
+        float coverage = 0, depth = kFarAway;
+        const std::size_t first = strip.index(x, row);
+        for (std::size_t i = first; i < first + strip.per_pixel; ++i) {
+          const float* at = radiance.data() + 8 * i;
+          direct += weight * glm::vec3(at[0], at[1], at[2]);
+          steps += static_cast<std::int64_t>(at[3]);
+          scattered += weight * glm::vec3(at[4], at[5], at[6]);
+          normal += strip.normal[i];
+          coverage += weight * strip.coverage[i];
+          depth = std::min(depth, strip.depth[i]);
+        }
+        const std::size_t pixel = static_cast<std::size_t>(first_row + row) * strip.width + x;
+        image->colour[pixel] = glm::vec4(direct + scattered, coverage);
+        image->direct[pixel] = direct;
+        image->scattered[pixel] = scattered;
+        image->depth[pixel] = depth;
+        const float length = glm::length(normal);
+        image->normal[pixel] = length > 1e-6f ? normal / length : glm::vec3(0);
       }
-      const std::size_t pixel = static_cast<std::size_t>(y) * width + x;
-      image->colour[pixel] = glm::vec4(direct + scattered, coverage);
-      image->direct[pixel] = direct;
-      image->scattered[pixel] = scattered;
-      image->depth[pixel] = depth;
-      const float length = glm::length(normal);
-      image->normal[pixel] = length > 1e-6f ? normal / length : glm::vec3(0);
     }
-  }
+    all_steps += steps;
+  });
+  return all_steps;
 }
 
 }  // namespace
@@ -149,7 +156,7 @@ struct ViewPass::Prepared {
   EntrySurfaces surfaces;
   cl::Program program;
   cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>,
-             cl::Buffer<float>, ViewParams, cl::Buffer<ViewSample>, cl::Buffer<int>, cl::Buffer<float>,
+             cl::Buffer<float>, cl::Buffer<int>, ViewParams, cl::Buffer<ViewSample>, cl::Buffer<int>, cl::Buffer<float>,
              cl::Buffer<LightParams>, cl::Buffer<float>, cl::Buffer<float>, cl::Buffer<float>, cl::Buffer<float>>
       kernel;
   ViewParams params;
@@ -201,7 +208,9 @@ ViewImage ViewPass::look(const Camera& camera, const std::function<void(double)>
   image.depth.resize(pixels);
   image.normal.resize(pixels);
   const int per_row = image.width * maker.grid() * maker.grid();
-  const int rows = std::clamp(kSamplesPerLaunch / per_row, 1, image.height);
+  // Whole squares of samples, if a launch has room for any.
+  int rows = std::clamp(kSamplesPerLaunch / per_row, 1, image.height);
+  if (rows > Strip::kSquare) rows -= rows % Strip::kSquare;
   cl::Buffer<ViewSample> samples = p.session.allocate<ViewSample>(static_cast<std::size_t>(rows) * per_row);
   cl::Buffer<float> radiance = p.session.allocate<float>(8 * static_cast<std::size_t>(rows) * per_row);
   cl::Buffer<int> claims = p.session.allocate<int>(1);
@@ -217,14 +226,12 @@ ViewImage ViewPass::look(const Camera& camera, const std::function<void(double)>
     p.session.fill_zero(queue, claims);
     // A CPU's work-items take samples until none is left, one work-item per core; a GPU's take one each.
     const std::size_t items = cpu ? p.session.device().compute_units : strip.samples.size();
-    p.kernel.enqueue(queue, {items}, {cpu ? std::size_t{1} : std::size_t{64}}, medium.regions_buffer,
-                     medium.tile_map_buffer, medium.block_region_buffer, medium.distance_tiles, medium.index_tiles,
-                     medium.coefficient_tiles, params, samples, claims, p.tiles, p.lights, p.depths, p.transmittance,
-                     p.ground, radiance);
+    p.kernel.enqueue(queue, {items}, {cpu ? std::size_t{1} : std::size_t{64}}, medium.regions_buffer, medium.tile_map_buffer,
+                     medium.block_region_buffer, medium.distance_tiles, medium.index_tiles, medium.coefficient_tiles,
+                     medium.region_tiles, params, samples, claims, p.tiles, p.lights, p.depths, p.transmittance, p.ground, radiance);
     std::vector<float> values(8 * strip.samples.size());
     p.session.read(queue, radiance, std::span<float>(values));
-    resolve(strip, values, row, end, maker.grid(), &image);
-    for (std::size_t i = 0; i < strip.samples.size(); ++i) image.steps += static_cast<std::int64_t>(values[8 * i + 3]);
+    image.steps += resolve(strip, values, row, &image);
     if (progress) progress(static_cast<double>(end) / image.height);
   }
   return image;

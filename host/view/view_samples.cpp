@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/parallel.h"
+
 namespace turbid {
 
 SampleMaker::SampleMaker(const ViewInput& in, const Camera& camera, const EntrySurfaces& surfaces, const VoxelSpace& space)
@@ -21,11 +23,25 @@ SampleMaker::SampleMaker(const ViewInput& in, const Camera& camera, const EntryS
 }
 
 Strip SampleMaker::strip(int first, int last) const {
-  const int width = camera_.width * grid_;
   Strip result;
-  for (int y = first * grid_; y < last * grid_; ++y) {
-    for (int x = 0; x < width; ++x) add(x, y, &result);
-  }
+  result.width = camera_.width;
+  result.rows = last - first;
+  result.per_pixel = grid_ * grid_;
+  const std::size_t count = static_cast<std::size_t>(result.width) * result.rows * result.per_pixel;
+  result.samples.resize(count);
+  result.depth.resize(count);
+  result.normal.resize(count);
+  result.coverage.resize(count);
+  parallel_ranges(result.rows, [&](int begin, int end) {
+    for (int row = begin; row < end; ++row) {
+      for (int x = 0; x < result.width; ++x) {
+        const std::size_t at = result.index(x, row);
+        for (int k = 0; k < result.per_pixel; ++k) {
+          add(x * grid_ + k % grid_, (first + row) * grid_ + k / grid_, at + k, &result);
+        }
+      }
+    }
+  });
   return result;
 }
 
@@ -35,7 +51,7 @@ glm::vec3 SampleMaker::direction_of(int x, int y) const {
   return glm::normalize(glm::dvec3(far_point) / far_point.w - glm::dvec3(camera_.position));
 }
 
-void SampleMaker::add(int x, int y, Strip* out) const {
+void SampleMaker::add(int x, int y, std::size_t to, Strip* out) const {
   const std::size_t i = static_cast<std::size_t>(y) * view_.width + x;
   const glm::vec3 direction = direction_of(x, y), eye = camera_.position;
   ViewSample sample{};
@@ -65,10 +81,10 @@ void SampleMaker::add(int x, int y, Strip* out) const {
       start_at(image_.position[i], direction, image_.id[i], normal, &sample);
     }
   }
-  out->samples.push_back(sample);
-  out->depth.push_back(depth);
-  out->normal.push_back(normal);
-  out->coverage.push_back(coverage);
+  out->samples[to] = sample;
+  out->depth[to] = depth;
+  out->normal[to] = normal;
+  out->coverage[to] = coverage;
 }
 
 void SampleMaker::start_at(glm::vec3 hit, glm::vec3 direction, int region, glm::vec3 normal, ViewSample* sample) const {

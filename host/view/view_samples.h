@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A camera's samples: what each pixel sees first, from a rasterised picture of the bodies' surfaces.
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "host/raster/raster.h"
@@ -22,8 +23,17 @@ struct VoxelSpace {
   glm::vec3 point(glm::vec3 x) const { return (x - frame.origin) / frame.voxel_size; }
 };
 
-/// The samples of a strip of rows, and what the host knows of their first hits.
+/// The samples of a strip of rows, and what the host knows of their first hits. They stand in squares of 8 x 8 pixels, all of
+/// a pixel's samples together: rays that follow each other meet the same tiles of the medium.
 struct Strip {
+  static constexpr int kSquare = 8;
+  int width = 0, rows = 0, per_pixel = 1;
+  /// Of a pixel's first sample; `row` within the strip.
+  std::size_t index(int x, int row) const {
+    const int top = row / kSquare * kSquare, left = x / kSquare * kSquare;
+    const int height = std::min(kSquare, rows - top), edge = std::min(kSquare, width - left);
+    return static_cast<std::size_t>(per_pixel) * (top * width + left * height + (row - top) * edge + (x - left));
+  }
   std::vector<ViewSample> samples;
   std::vector<float> depth;        // per sample
   std::vector<glm::vec3> normal;
@@ -41,7 +51,7 @@ class SampleMaker {
 
  private:
   glm::vec3 direction_of(int x, int y) const;
-  void add(int x, int y, Strip* out) const;
+  void add(int x, int y, std::size_t to, Strip* out) const;
   void start_at(glm::vec3 hit, glm::vec3 direction, int region, glm::vec3 normal, ViewSample* sample) const;
   float ground_distance(glm::vec3 eye, glm::vec3 direction) const;
 

@@ -6,10 +6,12 @@
 
 // The transmittance's mean over a segment of optical depth x, (1 - exp(-x)) / x: what the segment scatters and absorbs is
 // power * sigma * length times this. Series for the depths of nearly all steps, to 2e-7.
+#define MEAN_TRANSMITTANCE_SERIES(x)                                                                          \
+  (1.0f - (x) * (0.5f - (x) * (1.0f / 6.0f - (x) * (1.0f / 24.0f - (x) * (1.0f / 120.0f - (x) *               \
+          (1.0f / 720.0f - (x) * (1.0f / 5040.0f - (x) * (1.0f / 40320.0f))))))))
+
 static ALWAYS_INLINE Colour mean_transmittance(Colour depth) {
-  Colour mean = 1.0f / 720.0f - depth * (1.0f / 5040.0f - depth * (1.0f / 40320.0f));
-  mean = 0.5f - depth * (1.0f / 6.0f - depth * (1.0f / 24.0f - depth * (1.0f / 120.0f - depth * mean)));
-  mean = 1.0f - depth * mean;
+  Colour mean = MEAN_TRANSMITTANCE_SERIES(depth);
   if (colour_max(depth) > 0.5f) mean = depth > 0.5f ? -expm1(-depth) / fmax(depth, 0.5f) : mean;
   return mean;
 }

@@ -44,8 +44,11 @@ static void splat(global long* sums, int tile, Cell cell, Colour power, float fi
 // x-neighbours of a row are one vector. Being integers, they add up to the same whichever work-item traced which ray.
 #if TURBID_CHANNELS == 3
 #define OWN_WIDTH 4
+// Node by node: rays side by side follow each other into the same nodes, and a load waits for an earlier store to memory unless
+// they are of the same bytes.
 static ALWAYS_INLINE void add_row(global long* at, Colour left, Colour right) {
-  vstore8(vload8(0, at) + convert_long8((float8)(left, right)), 0, at);
+  vstore4(vload4(0, at) + convert_long4(left), 0, at);
+  vstore4(vload4(1, at) + convert_long4(right), 1, at);
 }
 #else
 #define OWN_WIDTH 1

@@ -3,8 +3,7 @@
 //     Tr j (1 - exp(-sigma_t ds)) / (sigma_t eta^2),    j = source / (4 pi)
 #ifndef TURBID_LIB_GATHER_H
 #define TURBID_LIB_GATHER_H
-#include "lib/attenuation.h"
-#include "lib/medium.h"
+#include "lib/packet.h"
 
 // Source of radiance 4 pi j at a point of a source tile [W/unit^2 per voxel]; none where there is no tile (tile < 0).
 static ALWAYS_INLINE Colour source_in(const global float* source_tiles, int tile, Cell cell) {
@@ -26,12 +25,66 @@ static ALWAYS_INLINE Colour source_in(const global float* source_tiles, int tile
 }
 
 // Adds what the segment sends towards the camera to `gathered` and takes what it swallows from `weight`.
-static ALWAYS_INLINE void gather(Colour* gathered, Colour* weight, Extinction sigma, Colour source, float length,
-                                 float eta_squared) {
+static void gather(Colour* gathered, Colour* weight, Extinction sigma, Colour source, float length, float eta_squared) {
   const Colour depth = (sigma.sigma_s + sigma.sigma_a) * length;
   const Colour share = *weight * mean_transmittance(depth);
   *gathered += share * source * (length * 0.25f * M_1_PI_F / eta_squared);
   *weight -= share * depth;
+}
+
+// Sources half way through the rays' steps.
+static ALWAYS_INLINE Colours sources_at(const global float* source_tiles, const Strides* strides) {
+  LANE_ARRAY int node[LANES];
+  STORE(strides->source_at + LOAD(strides->node), node);
+#if TURBID_CHANNELS == 3
+  Quads source[LANE_QUADS];
+#define SOURCE(lane) value_at(source_tiles, node[lane], strides, lane)
+  COLLECT(source, SOURCE);
+#undef SOURCE
+  return (Colours){{COMPONENT0(Floats, source), COMPONENT1(Floats, source), COMPONENT2(Floats, source)}};
+#else
+  LANE_ARRAY float source[LANES];
+  for (int i = 0; i < LANES; ++i) {
+    const global float* at = source_tiles + node[i];
+    const float2 row = strides->rows[0][i] * vload2(0, at) + strides->rows[1][i] * vload2(0, at + TURBID_TILE_EDGE) +
+                       strides->rows[2][i] * vload2(0, at + TURBID_TILE_EDGE * TURBID_TILE_EDGE) +
+                       strides->rows[3][i] * vload2(0, at + TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1));
+    source[i] = row.x + strides->fraction[0][i] * (row.y - row.x);
+  }
+  return (Colours){{LOAD(source)}};
+#endif
+}
+
+// The same for the rays in `gone` of a packet; the mask of those whose weight has fallen below `min_weight`.
+static ALWAYS_INLINE Ints gather_all(const Medium* medium, const Packet* p, const Strides* strides, Ints gone,
+                                     const global float* source_tiles, float min_weight, float* gathered, float* weight) {
+  const Extinctions sigma = extinctions_at(medium, p, strides);
+  const Floats length = gone ? strides->length : (Floats)(0.0f);
+  Colours depth, left = load_colours(weight), share;
+  UNROLL
+  for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
+    depth.channel[channel] = (sigma.sigma_s.channel[channel] + sigma.sigma_a.channel[channel]) * length;
+  }
+  const Colours mean = mean_transmittances(depth);
+  Floats heaviest = (Floats)(0.0f);
+  UNROLL
+  for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
+    share.channel[channel] = left.channel[channel] * mean.channel[channel];
+    left.channel[channel] -= share.channel[channel] * depth.channel[channel];
+    heaviest = greatest(heaviest, left.channel[channel]);
+  }
+  store_colours(left, weight);
+#if TURBID_SCATTERING
+  const Floats lit = strides->no_source ? (Floats)(0.0f) : length * (0.25f * M_1_PI_F) / strides->eta_squared;
+  const Colours source = sources_at(source_tiles, strides);
+  Colours sum = load_colours(gathered);
+  UNROLL
+  for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
+    sum.channel[channel] += share.channel[channel] * source.channel[channel] * lit;
+  }
+  store_colours(sum, gathered);
+#endif
+  return gone & MASK(heaviest < min_weight);
 }
 
 #endif

@@ -2,9 +2,8 @@
 // A light ray on its way: how it enters, what a segment takes from it, what happens at faces and surfaces, where it ends.
 #ifndef TURBID_LIB_MARCH_PATH_H
 #define TURBID_LIB_MARCH_PATH_H
-#include "lib/attenuation.h"
 #include "lib/ground.h"
-#include "lib/trace.h"
+#include "lib/packet.h"
 #include "shared/march_params.h"
 
 #ifndef TURBID_FIRST_MOMENT
@@ -14,9 +13,10 @@
 #error "TURBID_OWN_SUMS (1: every work-item has sums of its own, 0: all share them) must be defined"
 #endif
 
+// While a packet carries the ray on, what changes from step to step stands there.
 typedef struct {
   Ray ray;
-  Place place;
+  float room;   // see Packet
   Colour power, absorbed, deposited;
   float floor_power;
   int index;    // in `rays`; < 0: no ray
@@ -78,10 +78,25 @@ static void collect(Sinks* sinks, const MarchParams* p, int texel, float3 x, flo
   }
 }
 
+// Leaves scattered power in the nodes around a point.
+static ALWAYS_INLINE void deposit(Sinks* sinks, const MarchParams* p, int tile, Cell cell, Colour scattered, float3 direction) {
+#if TURBID_FIRST_MOMENT
+  splat(sinks->flux, tile, cell, scattered * direction.x, p->fixed_per_watt);
+  splat(sinks->flux + p->flux_stride, tile, cell, scattered * direction.y, p->fixed_per_watt);
+  splat(sinks->flux + 2 * (size_t)p->flux_stride, tile, cell, scattered * direction.z, p->fixed_per_watt);
+#endif
+#if TURBID_OWN_SUMS
+  splat_own(sinks->deposit, tile, cell, scattered, p->fixed_per_watt);
+#else
+  splat(sinks->deposit, tile, cell, scattered, p->fixed_per_watt);
+#endif
+  ++sinks->deposits;
+}
+
 // Takes what a segment loses out of the path: its scattered part into the source tile, the rest absorbed. False: too weak to
 // follow, the path has ended.
-static ALWAYS_INLINE bool attenuate(Path* path, const Medium* medium, Sinks* sinks, const MarchParams* p,
-                                    Extinction sigma, float length, int tile, Cell cell) {
+static bool attenuate(Path* path, const Medium* medium, Sinks* sinks, const MarchParams* p,
+                      Extinction sigma, float length, int tile, Cell cell) {
   const Colour sigma_t = sigma.sigma_s + sigma.sigma_a;
   const Colour share = path->power * mean_transmittance(sigma_t * length) * length;
   Colour scattered = sigma.sigma_s * share, absorbed = sigma.sigma_a * share;
@@ -104,18 +119,8 @@ static ALWAYS_INLINE bool attenuate(Path* path, const Medium* medium, Sinks* sin
       const int there = tile_of(medium, medium->regions[path->ray.region].source_set, centre.block);
       if (there >= 0) cell = centre, tile = there;
     }
-#if TURBID_FIRST_MOMENT
-    splat(sinks->flux, tile, cell, scattered * direction.x, p->fixed_per_watt);
-    splat(sinks->flux + p->flux_stride, tile, cell, scattered * direction.y, p->fixed_per_watt);
-    splat(sinks->flux + 2 * (size_t)p->flux_stride, tile, cell, scattered * direction.z, p->fixed_per_watt);
-#endif
-#if TURBID_OWN_SUMS
-    splat_own(sinks->deposit, tile, cell, scattered, p->fixed_per_watt);
-#else
-    splat(sinks->deposit, tile, cell, scattered, p->fixed_per_watt);
-#endif
+    deposit(sinks, p, tile, cell, scattered, direction);
     path->deposited += scattered;
-    ++sinks->deposits;
   } else {
     absorbed += scattered;
   }
@@ -141,9 +146,7 @@ static void begin(Path* path, const Medium* medium, Sinks* sinks, const MarchPar
   path->bounces = state->bounces;
   path->steps = state->steps;
   path->steps_left = p->batch_steps;
-  path->place.block = -1;
-  look_around(medium, &path->ray, p->step, 0.0f, &path->place);
-  path->place.room = state->room;
+  path->room = state->room;
   if (!state->entering) return;
   const int region = path->ray.region;
   const float eta_from = length(path->ray.v);

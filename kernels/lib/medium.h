@@ -81,6 +81,14 @@ static float3 slope4(const global float* tiles, int tile, Cell cell) {
                   along_z.x + cell.fraction.x * (along_z.y - along_z.x));
 }
 
+// The same by the weights of the four rows of corners and of the corners farther along x.
+static ALWAYS_INLINE float4 weigh4(const global float* at, const float* rows, int stride, float x) {
+  const float8 row = rows[0] * vload8(0, at) + rows[stride] * vload8(0, at + 4 * TURBID_TILE_EDGE) +
+                     rows[2 * stride] * vload8(0, at + 4 * TURBID_TILE_EDGE * TURBID_TILE_EDGE) +
+                     rows[3 * stride] * vload8(0, at + 4 * TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1));
+  return row.lo + x * (row.hi - row.lo);
+}
+
 static int tile_of(const Medium* medium, int set, int block) { return medium->tile_map[set * BLOCKS + block]; }
 
 // Gradient [1] and signed distance [voxels] of a body's surface; defined in blocks with a tile only.
@@ -179,6 +187,23 @@ static Extinction extinction_in(const Medium* medium, int region, int tile, Cell
   result.sigma_a = colour_load4(medium->regions[region].sigma_a);
   return result;
 }
+
+// (sigma_s, sigma_a) of nodes by weights, see weigh4.
+#if TURBID_CHANNELS == 3
+static ALWAYS_INLINE float8 coefficients_of(const global float* at, const float* rows, int stride, float x) {
+  const float16 row = rows[0] * vload16(0, at) + rows[stride] * vload16(0, at + 8 * TURBID_TILE_EDGE) +
+                      rows[2 * stride] * vload16(0, at + 8 * TURBID_TILE_EDGE * TURBID_TILE_EDGE) +
+                      rows[3 * stride] * vload16(0, at + 8 * TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1));
+  return row.lo + x * (row.hi - row.lo);
+}
+#else
+static ALWAYS_INLINE float2 coefficients_of(const global float* at, const float* rows, int stride, float x) {
+  const float4 row = rows[0] * vload4(0, at) + rows[stride] * vload4(0, at + 2 * TURBID_TILE_EDGE) +
+                     rows[2 * stride] * vload4(0, at + 2 * TURBID_TILE_EDGE * TURBID_TILE_EDGE) +
+                     rows[3 * stride] * vload4(0, at + 2 * TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1));
+  return row.lo + x * (row.hi - row.lo);
+}
+#endif
 
 static Extinction extinction_at(const Medium* medium, int region, Cell cell) {
   const int set = medium->regions[region].coefficient_set;

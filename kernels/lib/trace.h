@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One step of a ray through the medium: straight where the index is constant, drift-kick-drift where it is graded, cut short
-// at the domain's faces and at the zero crossing of a body's signed distance. `advance` does any step; `glide` the many steps
-// on which nothing can happen, at a fraction of the cost.
+// at the domain's faces and at the zero crossing of a body's signed distance. `advance` does any step of one ray; packet.h has the
+// many steps on which nothing can happen, for several rays at a fraction of the cost.
 //
 // Ray equation in the parameter tau, dtau = ds / eta:              [Ihrke et al. 2007; Sharma et al. 1982]
 //     dx/dtau = v,   dv/dtau = grad(eta^2 / 2),   |v| = eta(x)
@@ -49,19 +49,40 @@ static float fraction_inside(float from, float to, float size) {
   return 1.0f;
 }
 
-// Distance along the unit direction to where the ray leaves its block of cells; at least a hundredth of a voxel.
-static float distance_to_block_end(float3 x, float3 direction) {
-  const float3 y = x - 0.5f;
-  const float3 block = clamp(floor(y * 0.125f), (float3)(0.0f), (float3)(BLOCKS_X - 1, BLOCKS_Y - 1, BLOCKS_Z - 1));
-  float result = 1e9f;
-  const float position[3] = {x.x, x.y, x.z};
-  const float along[3] = {direction.x, direction.y, direction.z};
-  const float lower[3] = {8.0f * block.x + 0.5f, 8.0f * block.y + 0.5f, 8.0f * block.z + 0.5f};
-  for (int axis = 0; axis < 3; ++axis) {
-    if (along[axis] > 1e-6f) result = fmin(result, (lower[axis] + 8.0f - position[axis]) / along[axis]);
-    if (along[axis] < -1e-6f) result = fmin(result, (lower[axis] - position[axis]) / along[axis]);
+// How far along the unit direction a ray stays in the blocks of cells that are all `region`'s, or within its own block where
+// more regions meet; and a hundredth of a voxel more. `alone`: its own block is all the region's.
+static float distance_in_blocks(const Medium* medium, int region, float3 x, float3 direction, bool* alone) {
+  const float3 y = (x - 0.5f) * 0.125f, last = (float3)(BLOCKS_X - 1, BLOCKS_Y - 1, BLOCKS_Z - 1);
+  const float3 block = clamp(floor(y), (float3)(0.0f), last);
+  // To the next face of a block and from face to face, along each axis.
+  const float3 along = fabs(direction) > 1e-6f ? direction : (float3)(1e-6f);
+  const float3 inverse = 8.0f / along, between = fabs(inverse);
+  const bool up_x = along.x > 0.0f, up_y = along.y > 0.0f, up_z = along.z > 0.0f;
+  const float3 face = block + (float3)(up_x ? 1.0f : 0.0f, up_y ? 1.0f : 0.0f, up_z ? 1.0f : 0.0f);
+  float3 next = (face - y) * inverse;
+  int left_x = (int)(up_x ? last.x - block.x : block.x), left_y = (int)(up_y ? last.y - block.y : block.y),
+      left_z = (int)(up_z ? last.z - block.z : block.z);
+  int at = (int)block.x + BLOCKS_X * ((int)block.y + BLOCKS_Y * (int)block.z);
+  *alone = medium->block_region[at] == region;
+  float end = fmin(next.x, fmin(next.y, next.z));
+  while (*alone) {
+    if (next.x == end) {
+      if (left_x-- == 0) break;
+      at += up_x ? 1 : -1;
+      next.x += between.x;
+    } else if (next.y == end) {
+      if (left_y-- == 0) break;
+      at += up_y ? BLOCKS_X : -BLOCKS_X;
+      next.y += between.y;
+    } else {
+      if (left_z-- == 0) break;
+      at += up_z ? BLOCKS_X * BLOCKS_Y : -BLOCKS_X * BLOCKS_Y;
+      next.z += between.z;
+    }
+    if (medium->block_region[at] != region) break;
+    end = fmin(next.x, fmin(next.y, next.z));
   }
-  return fmax(result, 0.0f) + 0.01f;
+  return fmax(end, 0.0f) + 0.01f;
 }
 
 // Below this square of its length the interpolated gradient averages over an edge of the body.
@@ -125,7 +146,42 @@ static float depth_beyond(const Medium* medium, int region, int next, float3 x) 
   return region > next ? outside : -outside;
 }
 
-// Advances the ray by at most `step_size` of arc (farther where nothing can happen on the way) and says what stopped it.
+// What the segment from `from` to `*to` meets: `*to` is moved to a face of the domain or just before another region's surface.
+static void meet(const Medium* medium, Step* step, int region, float grace, float3 from, float3* to) {
+  const float fx = fraction_inside(from.x, to->x, (float)TURBID_VOXELS_X);
+  const float fy = fraction_inside(from.y, to->y, (float)TURBID_VOXELS_Y);
+  const float fz = fraction_inside(from.z, to->z, (float)TURBID_VOXELS_Z);
+  const float inside = fmin(fx, fmin(fy, fz));
+  if (inside < 1.0f) {
+    step->event = EVENT_FACE;
+    if (fx <= fy && fx <= fz) step->face = to->x > from.x ? 1 : 0;
+    else if (fy <= fz) step->face = to->y > from.y ? 3 : 2;
+    else step->face = to->z > from.z ? 5 : 4;
+    *to = from + inside * (*to - from);
+  }
+  step->room = 1e9f;
+#if TURBID_BODIES > 0
+  const int there = region_with_room(medium, locate(*to), &step->room);
+  if (there == region) return;
+  step->room = 0.0f;
+  // A ray that starts on the rasterised surface may find itself a little on the wrong side of the sampled one, which is
+  // coarser: it keeps its region while it gets clear.
+  if (grace > 0.0f && step->event == EVENT_NONE &&
+      depth_beyond(medium, region, there, *to) < fmax(depth_beyond(medium, region, there, from), RIPPLE))
+    return;
+  step->next_region = there;
+  float3 before;
+  find_crossing(medium, step, region, from, *to, &before);
+  // At a kink of the sampled surface the ray may find itself outside while it heads inwards: it goes on, for reflected by
+  // that normal it would come back to where it is, for ever.
+  const float outwards = dot(*to - from, surface_normal(medium, step->surface, step->beyond));
+  if (step->surface == region ? outwards < 0.0f : outwards > 0.0f) return;
+  step->event = EVENT_SURFACE;
+  *to = before;
+#endif
+}
+
+// Advances the ray by at most `step_size` of arc, or through clear media to the next surface or face, and says what stopped it.
 // `room`: as far as this the ray surely meets no surface in its block [voxels]; 0 where nothing is known.
 static Step advance(const Medium* medium, Ray* ray, float step_size, float room) {
   Step step;
@@ -133,10 +189,10 @@ static Step advance(const Medium* medium, Ray* ray, float step_size, float room)
   step.next_region = ray->region;
   step.surface = ray->region;
   step.face = 0;
+  step.room = room;
   const float3 from = ray->x;
   const global RegionParams* region = medium->regions + ray->region;
-  float3 to;
-  float3 v = ray->v;
+  float3 to, v = ray->v;
   bool graded = false;
 #if TURBID_GRADED
   const float dtau = step_size * region->tau_per_arc;
@@ -147,157 +203,45 @@ static Step advance(const Medium* medium, Ray* ray, float step_size, float room)
       graded = true;
       v += dtau * interpolate4(medium->index_tiles, tile, cell).xyz;
       to = from + 0.5f * dtau * (ray->v + v);
+      const float3 target = to;
+      meet(medium, &step, ray->region, ray->grace, from, &to);
+      float done = dtau;
+      if (step.event != EVENT_NONE) {
+        // The velocity follows the part of the step that was done.
+        done *= distance(from, to) / fmax(distance(from, target), 1e-12f);
+        v = ray->v + done * index_at(medium, ray->region, locate(from + 0.5f * done * ray->v)).xyz;
+      }
+      step.middle = from + 0.5f * done * ray->v;
     }
   }
 #endif
   if (!graded) {
     const float3 direction = v * rsqrt(dot(v, v));
-    float length = step_size;
-    if (region->source_set < 0 && region->coefficient_set < 0) {
-      // Constant coefficients and nothing to gather: one exact segment.
-      const float end = distance_to_block_end(from, direction);
-      const bool alone = medium->block_region[locate(from).block] == ray->region;
-      length = fmax(length, alone ? end : fmin(room, end));
-    }
-    to = from + length * direction;
-  }
-  // The domain's faces.
-  const float3 target = to;
-  float inside = 1.0f;
-  {
-    const float fx = fraction_inside(from.x, to.x, (float)TURBID_VOXELS_X);
-    const float fy = fraction_inside(from.y, to.y, (float)TURBID_VOXELS_Y);
-    const float fz = fraction_inside(from.z, to.z, (float)TURBID_VOXELS_Z);
-    inside = fmin(fx, fmin(fy, fz));
-    if (inside < 1.0f) {
-      step.event = EVENT_FACE;
-      if (fx <= fy && fx <= fz) step.face = to.x > from.x ? 1 : 0;
-      else if (fy <= fz) step.face = to.y > from.y ? 3 : 2;
-      else step.face = to.z > from.z ? 5 : 4;
-      to = from + inside * (to - from);
-    }
-  }
-  // Another region's surface on the way?
-  step.room = 1e9f;
-#if TURBID_BODIES > 0
-  const int there = region_with_room(medium, locate(to), &step.room);
-  if (there != ray->region) {
-    step.room = 0.0f;
-    // A ray that starts on the rasterised surface may find itself a little on the wrong side of the sampled one, which is
-    // coarser: it keeps its region while it gets clear.
-    const bool getting_clear = ray->grace > 0.0f && step.event == EVENT_NONE &&
-                               depth_beyond(medium, ray->region, there, to) <
-                                   fmax(depth_beyond(medium, ray->region, there, from), RIPPLE);
-    if (!getting_clear) {
-      step.next_region = there;
-      float3 before;
-      find_crossing(medium, &step, ray->region, from, to, &before);
-      // At a kink of the sampled surface the ray may find itself outside while it heads inwards: it goes on, for reflected by
-      // that normal it would come back to where it is, for ever.
-      const float outwards = dot(v, surface_normal(medium, step.surface, step.beyond));
-      if (step.surface == ray->region ? outwards >= 0.0f : outwards <= 0.0f) {
-        step.event = EVENT_SURFACE;
-        to = before;
+    // Constant coefficients and nothing to gather: one exact segment, until the index changes.
+    const bool exact = region->source_set < 0 && region->coefficient_set < 0, straight = exact && region->index_set < 0;
+    float done = 0.0f;
+    to = from;
+    do {
+      const float3 start = to;
+      float length = step_size;
+      if (exact) {
+        bool alone;
+        const float end = distance_in_blocks(medium, ray->region, start, direction, &alone);
+        length = fmax(length, alone ? end : fmin(step.room, end));
       }
-    }
+      to = start + length * direction;
+      meet(medium, &step, ray->region, ray->grace - done, start, &to);
+      done += distance(start, to);
+    } while (straight && step.event == EVENT_NONE);
+    step.middle = 0.5f * (from + to);
   }
-#endif
   step.length = distance(from, to);
-  step.middle = 0.5f * (from + to);
-#if TURBID_GRADED
-  if (graded) {
-    float done = dtau;
-    if (step.event != EVENT_NONE) {
-      // The velocity follows the part of the step that was done.
-      done *= step.length / fmax(distance(from, target), 1e-12f);
-      v = ray->v + done * index_at(medium, ray->region, locate(from + 0.5f * done * ray->v)).xyz;
-    }
-    step.middle = from + 0.5f * done * ray->v;
-  }
-#endif
   const float3 mean = 0.5f * (ray->v + v);
   step.eta_squared = dot(mean, mean);
   ray->x = to;
   ray->v = v;
   ray->grace -= step.length;
   return step;
-}
-
-// The block of cells around a ray, looked up once per visit, and the room left in it.
-typedef struct {
-  float3 corner;          // of the block's first node [voxels]
-  int block, region;      // looked up for these
-  int index_tile;         // < 0: no tile, as in the two below
-  int coefficient_tile;
-  int source_tile;
-  float dtau;             // of a whole step
-  float eta_squared;      // where there is no index tile
-  float room;             // arc length on which the ray meets no surface and no face of the domain as long as it is in the block
-  float least_room;       // that a glide needs; without bounds where one long segment is exact
-} Place;
-
-// Where the ray has come to with a step that left it `room`.
-static void look_around(const Medium* medium, const Ray* ray, float step_size, float room, Place* place) {
-  const float3 x = ray->x;
-  const Cell cell = locate(x);
-  const global RegionParams* region = medium->regions + ray->region;
-  if (cell.block != place->block || ray->region != place->region) {
-    place->block = cell.block;
-    place->region = ray->region;
-    const int bx = cell.block % BLOCKS_X, by = (cell.block / BLOCKS_X) % BLOCKS_Y, bz = cell.block / (BLOCKS_X * BLOCKS_Y);
-    place->corner = (float3)(8 * bx, 8 * by, 8 * bz) + 0.5f;
-    place->index_tile = region->index_set >= 0 ? tile_of(medium, region->index_set, cell.block) : -1;
-    place->coefficient_tile = region->coefficient_set >= 0 ? tile_of(medium, region->coefficient_set, cell.block) : -1;
-    place->source_tile = region->source_set >= 0 ? tile_of(medium, region->source_set, cell.block) : -1;
-  }
-  const bool exact = place->index_tile < 0 && region->source_set < 0 && region->coefficient_set < 0;
-  place->least_room = exact ? 1e30f : step_size;
-  place->eta_squared = dot(ray->v, ray->v);
-  place->dtau = step_size * (place->index_tile >= 0 ? region->tau_per_arc : rsqrt(place->eta_squared));
-  // The outermost half voxel has cells of its own kind: steps there are done with care.
-  const float3 wall = fmin(x, (float3)(TURBID_VOXELS_X, TURBID_VOXELS_Y, TURBID_VOXELS_Z) - x) - 0.5f;
-  place->room = fmin(room, fmin(wall.x, fmin(wall.y, wall.z)));
-}
-
-typedef struct {
-  Cell cell;          // of the point half way, in the place's block
-  float length;       // arc length done [voxels]
-  float eta_squared;  // half way
-} Stride;
-
-// One step within the room of a place, as `advance` would do it; false, with nothing done, where it may meet something.
-static ALWAYS_INLINE bool glide(const Medium* medium, Ray* ray, Place* place, float step_size, Stride* stride) {
-  if (place->room < place->least_room) return false;
-  const float dtau = place->dtau;
-  const float3 middle = ray->x + 0.5f * dtau * ray->v;
-  const float3 y = fmin(middle - place->corner, (float3)(7.9999f));
-  const int3 i = convert_int3(y);
-  Cell cell;
-  cell.block = place->block;
-  cell.node = i.x + TURBID_TILE_EDGE * (i.y + TURBID_TILE_EDGE * i.z);
-  cell.fraction = y - convert_float3(i);
-  float3 v = ray->v;
-#if TURBID_GRADED
-  if (place->index_tile >= 0) v += dtau * interpolate4(medium->index_tiles, place->index_tile, cell).xyz;
-#endif
-  const float3 to = middle + 0.5f * dtau * v;
-  const float3 off = fabs(to - place->corner - 4.0f);
-  if (fmax(off.x, fmax(off.y, off.z)) > 4.0f) return false;
-  stride->cell = cell;
-  stride->length = step_size;
-  stride->eta_squared = place->eta_squared;
-#if TURBID_GRADED
-  if (place->index_tile >= 0) {
-    const float3 mean = 0.5f * (ray->v + v);
-    stride->eta_squared = dot(mean, mean);
-    stride->length = dtau * sqrt(stride->eta_squared);
-  }
-#endif
-  ray->x = to;
-  ray->v = v;
-  ray->grace -= stride->length;
-  place->room -= stride->length;
-  return true;
 }
 
 // No reflection between two regions: their blurred indices join, or the indices agree to what sampling can tell (a graded index

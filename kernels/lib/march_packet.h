@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// A packet of light rays: what a step takes from all of them at once, and how single paths leave and join it.
+#ifndef TURBID_LIB_MARCH_PACKET_H
+#define TURBID_LIB_MARCH_PACKET_H
+#include "lib/march_path.h"
+
+typedef struct {
+  Packet rays;
+  LANE_ARRAY float power[TURBID_CHANNELS][LANES], absorbed[TURBID_CHANNELS][LANES], deposited[TURBID_CHANNELS][LANES];
+  LANE_ARRAY float floor_power[LANES];
+  LANE_ARRAY int steps[LANES], steps_left[LANES];
+} Hot;
+
+static void take_path(const Hot* hot, int lane, Path* path) {
+  path->ray = take_ray(&hot->rays, lane);
+  path->room = room_around(&hot->rays, lane, path->ray.x);
+  path->power = lane_colour(hot->power, lane);
+  path->absorbed = lane_colour(hot->absorbed, lane);
+  path->deposited = lane_colour(hot->deposited, lane);
+  path->steps = hot->steps[lane];
+  path->steps_left = hot->steps_left[lane];
+}
+
+static void put_path(Hot* hot, int lane, const Path* path, const Medium* medium, float step_size) {
+  if (path->index < 0) {
+    clear_lane(&hot->rays, lane);
+    return;
+  }
+  put_ray(&hot->rays, lane, medium, &path->ray, step_size, path->room);
+  set_lane_colour(path->power, hot->power, lane);
+  set_lane_colour(path->absorbed, hot->absorbed, lane);
+  set_lane_colour(path->deposited, hot->deposited, lane);
+  hot->floor_power[lane] = path->floor_power;
+  hot->steps[lane] = path->steps;
+  hot->steps_left[lane] = path->steps_left;
+}
+
+#if TURBID_SCATTERING
+// Moves the points of thick steps from half way to where the light is lost on average, see `centre_of_loss`, unless the region
+// has no tile there.
+static ALWAYS_INLINE void move_to_losses(const Hot* hot, const global int4* region_tiles, Strides* strides, Ints thick,
+                                         Floats depth, int* tile) {
+  const Floats squared = depth * depth;
+  const Floats centre = 0.5f - depth * (1.0f / 12.0f - squared * (1.0f / 720.0f - squared * (1.0f / 30240.0f - squared * (1.0f / 1209600.0f))));
+  const Points v = load_points(hot->rays.v[0]);
+  const Floats back = (centre - 1.0f) * strides->length / sqrt(squared_length(v));
+  const Cells cells = locate_all(along(load_points(hot->rays.x[0]), back, v));
+  LANE_ARRAY int moves[LANES], entry[LANES], block[LANES], node[LANES];
+  LANE_ARRAY float fraction[3][LANES];
+  STORE(thick, moves);
+  STORE(LOAD(hot->rays.tile_row) + cells.block, entry);
+  STORE(cells.block, block);
+  STORE(cells.node, node);
+  store_points(cells.fraction, fraction[0]);
+  for (int i = 0; i < LANES; ++i) {
+    if (!moves[i]) continue;
+    const int there = region_tiles[entry[i]].z;
+    if (there < 0) continue;
+    tile[i] = TURBID_TILE_NODES * there;
+    strides->block[i] = block[i];
+    strides->node[i] = node[i];
+    for (int axis = 0; axis < 3; ++axis) strides->fraction[axis][i] = fraction[axis][i];
+  }
+}
+#endif
+
+// What the steps of the rays in `gone` take from them, as `attenuate` does; the mask of those left for `attenuate` itself: they
+// may end here, or lose nearly all.
+static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, const global int4* region_tiles, Sinks* sinks,
+                                        const MarchParams* p, Strides* strides, Ints gone) {
+  const Extinctions sigma = extinctions_at(medium, &hot->rays, strides);
+  const Colours power = load_colours(hot->power[0]);
+  Colours depth, scattered, absorbed;
+  UNROLL
+  for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
+    depth.channel[channel] = (sigma.sigma_s.channel[channel] + sigma.sigma_a.channel[channel]) * strides->length;
+  }
+  const Colours mean = mean_transmittances(depth);
+  Floats heaviest = (Floats)(0.0f), deepest = (Floats)(0.0f);
+  UNROLL
+  for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
+    const Floats share = power.channel[channel] * mean.channel[channel] * strides->length;
+    scattered.channel[channel] = sigma.sigma_s.channel[channel] * share;
+    absorbed.channel[channel] = sigma.sigma_a.channel[channel] * share;
+    heaviest = greatest(heaviest, power.channel[channel] - (scattered.channel[channel] + absorbed.channel[channel]));
+    deepest = greatest(deepest, depth.channel[channel]);
+  }
+  Ints apart = gone & MASK(heaviest < LOAD(hot->floor_power));
+#if TURBID_SCATTERING
+  apart |= gone & MASK(deepest > 1.0f);  // as far as the series in `move_to_losses` goes
+#endif
+  const Ints here = gone & ~apart;
+#if TURBID_SCATTERING
+  const Ints absorbs = strides->no_source;  // where no source can be left
+  const Ints leaves = here & ~absorbs;
+  LANE_ARRAY int deposits[LANES], tile[LANES];
+  LANE_ARRAY float left[TURBID_CHANNELS][LANES];
+  STORE(leaves, deposits);
+  STORE(strides->source_at, tile);
+  store_colours(scattered, left[0]);
+  const Ints thick = leaves & MASK(deepest > THICK_STEP);
+  if (any_of(thick)) move_to_losses(hot, region_tiles, strides, thick, deepest, tile);
+  for (int i = 0; i < LANES; ++i) {
+    if (!deposits[i]) continue;
+    float3 direction = (float3)(0.0f);
+#if TURBID_FIRST_MOMENT
+    direction = normalize((float3)(hot->rays.v[0][i], hot->rays.v[1][i], hot->rays.v[2][i]));
+#endif
+    deposit(sinks, p, tile[i] / TURBID_TILE_NODES, cell_of(strides, i), lane_colour(left, i), direction);
+  }
+#else
+  const Ints absorbs = (Ints)(-1);
+#endif
+  UNROLL
+  for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
+    const Floats s = here ? scattered.channel[channel] : (Floats)(0.0f), a = here ? absorbed.channel[channel] : (Floats)(0.0f);
+    STORE(power.channel[channel] - (s + a), hot->power[channel]);
+    STORE(LOAD(hot->absorbed[channel]) + (a + (absorbs ? s : (Floats)(0.0f))), hot->absorbed[channel]);
+    STORE(LOAD(hot->deposited[channel]) + (absorbs ? (Floats)(0.0f) : s), hot->deposited[channel]);
+  }
+  return apart;
+}
+
+#endif

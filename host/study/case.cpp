@@ -108,7 +108,7 @@ const std::vector<Case>& cases() {
     std::vector<Case> list;
     for (const auto make :
          {study::lattice_cases, study::wave_cases, study::boundary_cases, study::beam_cases, study::path_cases,
-          study::surface_cases, study::transport_cases, study::view_cases, study::stopping_cases, study::photon_cases,
+          study::surface_cases, study::transport_cases, study::view_cases, study::stopping_cases, study::photon_cases, study::settings_cases,
           study::hard_media_cases, study::hard_contrast_cases, study::hard_void_cases, study::hard_index_cases,
           study::hard_ray_cases, study::hard_shape_cases})
       for (Case& one : make()) list.push_back(std::move(one));

@@ -16,6 +16,7 @@ std::vector<Case> surface_cases();    ///< cases_surfaces.cpp
 std::vector<Case> transport_cases();  ///< cases_transport.cpp
 std::vector<Case> view_cases();       ///< cases_view.cpp
 std::vector<Case> stopping_cases();   ///< cases_stopping.cpp
+std::vector<Case> settings_cases();   ///< cases_settings.cpp
 std::vector<Case> photon_cases();     ///< cases_photon.cpp
 std::vector<Case> hard_media_cases();     ///< hard_media.cpp
 std::vector<Case> hard_contrast_cases();  ///< hard_contrast.cpp

@@ -20,8 +20,9 @@ namespace turbid::app {
 namespace {
 
 struct ConvergeOptions : SceneOptions {
-  std::string over, reference = "auto", output, cache;
-  std::vector<double> levels;
+  std::vector<std::string> over;
+  std::string reference = "auto", output, cache;
+  std::vector<double> levels, levels2;
   int repeat = 1;
   std::optional<double> photons;
   bool picture = false, pareto = false, estimate = false;
@@ -48,9 +49,14 @@ std::vector<SceneRefinement> refine(cl::Session& session, Progress& progress, co
     std::string names;
     for (const Case& one : cases()) names += one.refinements.empty() ? "" : (names.empty() ? "" : ", ") + one.name;
     if (!found) throw InputError(options.scene + ": no scene (.toml) and no such case; cases that refine: " + names);
-    return refine_case(session, progress, *found, options.over, options.levels, tell);
+    std::vector<SceneRefinement> all;
+    for (std::size_t i = 0; i < options.over.size(); ++i)
+      for (SceneRefinement& one :
+           refine_case(session, progress, *found, options.over[i], i ? options.levels2 : options.levels, tell))
+        all.push_back(std::move(one));
+    return all;
   }
-  const SceneParameter& parameter = find_scene_parameter(options.over);
+  const SceneParameter& parameter = find_scene_parameter(options.over.front());
   const auto read = [&](std::optional<int> resolution) {
     SceneOverrides overrides = options.overrides;
     if (resolution) overrides.resolution = resolution;
@@ -67,7 +73,21 @@ std::vector<SceneRefinement> refine(cl::Session& session, Progress& progress, co
     settings.levels = {double(first), 2.0 * first, 4.0 * first};
   }
   check_levels(parameter, settings.levels);
-  return {refine_scene(session, read, parameter, settings, tell)};
+  if (options.over.size() == 1) return {refine_scene(session, read, parameter, settings, tell)};
+  // Two: the first one is refined beside every level of the second.
+  const SceneParameter& second = find_scene_parameter(options.over[1]);
+  if (second.name == parameter.name || second.name == "voxel_size" || second.name == "photons" ||
+      second.name == "solver")
+    throw InputError("--over " + parameter.name + "," + second.name +
+                     ": expected as the second of two parameters step, rays, tolerance, block or inner");
+  const std::vector<double>& levels2 = options.levels2.empty() ? second.levels : options.levels2;
+  check_levels(second, levels2);
+  std::vector<SceneRefinement> all;
+  for (const double level : levels2) {
+    settings.beside = {second, level};
+    all.push_back(refine_scene(session, read, parameter, settings, tell));
+  }
+  return all;
 }
 
 Scene read(const ConvergeOptions& options, const std::string& path) {
@@ -158,6 +178,9 @@ void converge(ConvergeOptions options) {
   if (options.pareto) return weigh(options);
   if (options.over.empty())
     throw InputError("expected --over PARAMETER, --pareto or --against photon: see turbid converge --help");
+  if (options.over.size() > 2) throw InputError("--over: expected one or two parameters");
+  if (!options.levels2.empty() && options.over.size() < 2)
+    throw InputError("--levels2: expected two parameters after --over");
   if (options.reference != "auto" && options.reference != "photon")
     throw InputError("--reference " + options.reference + ": expected auto or photon");
   if (options.repeat < 1) throw InputError("--repeat: expected 1 or more");
@@ -168,7 +191,7 @@ void converge(ConvergeOptions options) {
   const std::vector<SceneRefinement> refinements = refine(session, progress, options);
   progress.finish();
   publish(converge_document(name, refinements, report_context(command_line(), &choice.device)), options,
-          name + "/converge_" + options.over);
+          name + "/converge_" + options.over.front() + (options.over.size() > 1 ? "_" + options.over[1] : ""));
   for (const SceneRefinement& refinement : refinements)
     if (!refinement.passed())
       throw VerificationError(name + ": the order in " + refinement.parameter.name + " is less than expected");
@@ -194,14 +217,20 @@ void add_converge(CLI::App& program, Work& work) {
   command.add_option("--resolution", options->overrides.resolution, "Voxels along the domain's longest side")
       ->type_name("N");
   command
-      .add_option("--over", options->over,
-                  "voxel_size, step, rays, tolerance, photons, block, inner or solver; of a case what it offers")
+      .add_option(
+          "--over", options->over,
+          "voxel_size, step, rays, tolerance, photons, block, inner or solver; of a case what it offers. Two with "
+          "a comma: the first beside every level of the second, of a case one after the other")
+      ->delimiter(',')
       ->type_name("PARAMETER");
   command
       .add_option(
           "--levels", options->levels,
           "Its values from coarse to fine, with commas between; voxel_size: voxels along the longest side, each a "
           "multiple of the first")
+      ->delimiter(',')
+      ->type_name("L,L,...");
+  command.add_option("--levels2", options->levels2, "Those of the second parameter")
       ->delimiter(',')
       ->type_name("L,L,...");
   command
@@ -228,6 +257,7 @@ void add_converge(CLI::App& program, Work& work) {
       "Examples:\n"
       "  turbid converge sphere_matched --over voxel_size\n"
       "  turbid converge scenes/sphere.toml --over voxel_size --levels 24,48,96 --picture\n"
+      "  turbid converge scenes/sphere.toml --over voxel_size,rays --levels 16,32 --levels2 1,4\n"
       "  turbid converge scenes/sphere.toml --pareto --resolution 64\n"
       "  turbid converge scenes/sphere.toml scenes/fog.toml --against photon --resolution 48\n"
       "  turbid converge --estimate\n"

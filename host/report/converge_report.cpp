@@ -23,9 +23,29 @@ std::string order_sentence(const SceneRefinement& r) {
   return text + (r.passed() ? ". Met." : ". NOT MET.");
 }
 
+/// "step", or "step at rays 4" beside a second parameter.
+std::string title_of(const SceneRefinement& r) {
+  return r.parameter.name + (r.beside ? line(" at %s %g", r.beside->parameter.name.c_str(), r.beside->level) : "");
+}
+
+/// Errors over two parameters: the levels of the first down, those of the second across.
+Table both_table(const std::vector<SceneRefinement>& all) {
+  const std::string& second = all.front().beside->parameter.name;
+  Table table{.id = "both", .title = "Relative L2 error over " + all.front().parameter.name + " and " + second};
+  table.caption = "Where a row or a column no longer falls, the other parameter limits.";
+  table.columns = {{all.front().parameter.name, all.front().parameter.level_unit}};
+  for (const SceneRefinement& r : all) table.columns.push_back({line("%s %g", second.c_str(), r.beside->level)});
+  for (std::size_t i = 0; i < all.front().levels.size(); ++i) {
+    Row row{.cells = {all.front().levels[i].level}};
+    for (const SceneRefinement& r : all) row.cells.push_back(number(r.levels[i].fluence.rel_l2));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 Table level_table(const SceneRefinement& r, const std::string& id) {
   const bool picture = !r.levels.empty() && r.levels.front().image;
-  Table table{.id = id, .title = "Levels of " + r.parameter.name};
+  Table table{.id = id, .title = "Levels of " + title_of(r)};
   table.caption = "Errors against " + r.reference + ". " + order_sentence(r);
   if (r.noise > 0)
     table.caption += line(" The reference's own scatter, %.2g in the L2 norm, is taken out of L2 and relMSE.", r.noise);
@@ -141,11 +161,16 @@ Pictures pictures_of(const SceneRefinement& r, const std::string& id) {
 Document converge_document(const std::string& subject, const std::vector<SceneRefinement>& refinements,
                            const NamedTexts& context) {
   Document document{.title = "Convergence of " + subject, .context = context};
+  if (!refinements.empty() && refinements.front().beside) {
+    Section section{.title = subject + " over two parameters"};
+    section.parts.push_back(both_table(refinements));
+    document.sections.push_back(std::move(section));
+  }
   for (std::size_t i = 0; i < refinements.size(); ++i) {
     const SceneRefinement& r = refinements[i];
     const std::string suffix = refinements.size() > 1 ? "_" + std::to_string(i + 1) : "";
-    document.summary += (i ? " " : "") + r.parameter.name + ": " + order_sentence(r);
-    Section section{.title = subject + " over " + r.parameter.name};
+    document.summary += (i ? " " : "") + title_of(r) + ": " + order_sentence(r);
+    Section section{.title = subject + " over " + title_of(r)};
     section.parts.push_back(level_table(r, "levels" + suffix));
     section.parts.push_back(error_plot(r, "error" + suffix));
     section.parts.push_back(time_plot(r, "time" + suffix));

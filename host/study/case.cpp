@@ -109,8 +109,8 @@ const std::vector<Case>& cases() {
     for (const auto make :
          {study::lattice_cases, study::wave_cases, study::boundary_cases, study::beam_cases, study::path_cases,
           study::surface_cases, study::transport_cases, study::view_cases, study::stopping_cases, study::photon_cases,
-          study::estimate_cases, study::hard_media_cases, study::hard_contrast_cases, study::hard_void_cases,
-          study::hard_index_cases, study::hard_ray_cases, study::hard_shape_cases})
+          study::estimate_cases, study::settings_cases, study::hard_media_cases, study::hard_contrast_cases,
+          study::hard_void_cases, study::hard_index_cases, study::hard_ray_cases, study::hard_shape_cases})
       for (Case& one : make()) list.push_back(std::move(one));
     const auto rank = [](const Case& c) { return c.number > 0 ? c.number : std::numeric_limits<int>::max(); };
     std::stable_sort(list.begin(), list.end(), [&](const Case& a, const Case& b) { return rank(a) < rank(b); });

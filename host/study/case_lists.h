@@ -18,6 +18,7 @@ std::vector<Case> view_cases();           ///< cases_view.cpp
 std::vector<Case> stopping_cases();       ///< cases_stopping.cpp
 std::vector<Case> photon_cases();         ///< cases_photon.cpp
 std::vector<Case> estimate_cases();       ///< cases_estimate.cpp
+std::vector<Case> settings_cases();       ///< cases_settings.cpp
 std::vector<Case> hard_media_cases();     ///< hard_media.cpp
 std::vector<Case> hard_contrast_cases();  ///< hard_contrast.cpp
 std::vector<Case> hard_void_cases();      ///< hard_voids.cpp

@@ -15,14 +15,18 @@ constexpr double kPi = std::numbers::pi;
 /// Index and emission fall to 1 and 0 with (1 - (r/R)^2)^2, inside the body, whose surface at 1.1 R lies where nothing
 /// happens: no edge anywhere, so nothing but the gather errs. eta r grows with r, so no light is trapped, and by
 /// symmetry all directions receive alike: power = 4 pi D^2 x irradiance.
-double counted_power(CaseContext& context, int voxels) {
+/// `ambient`: the glowing medium fills the domain itself, without a body.
+double counted_power(CaseContext& context, int voxels, bool ambient = false) {
   const double radius = 1, distance = 6;
   MediumDescription scene =
       empty_domain(glm::ivec3(voxels), static_cast<float>(2.4 / voxels), FaceBoundary::open, true);
   Material glow = make_material({});
   glow.eta = expression_field("1 + 0.3*clamp(1 - r*r, 0, 1)^2");
   glow.emission = expression_field("clamp(1 - r*r, 0, 1)^2");
-  add_body(scene, make_sphere(static_cast<float>(1.1 * radius), {}), glow);
+  if (ambient)
+    set_ambient(scene, glow);
+  else
+    add_body(scene, make_sphere(static_cast<float>(1.1 * radius), {}), glow);
   const Run lit = run(context.session, scene, {});
   Camera camera;
   camera.position = {0, 0, static_cast<float>(distance)};
@@ -72,6 +76,10 @@ Case gather_case() {
     return level;
   };
   c.refinements = {r};
+  c.check = [](CaseContext& context, CaseResult& result) {
+    result.relative("the same as the domain's own medium", 1, counted_power(context, 48, true), 1e-4,
+                    "eta_obs is the index where the camera is, not the medium's mean");
+  };
   return c;
 }
 

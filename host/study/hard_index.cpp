@@ -74,8 +74,13 @@ Case trapped_case() {
           result.absolute("in flight at the end, " + name, cosine, in_flight, 0.01,
                           "solid angles of the lamp's rays; what Fresnel still holds after 16 bounces");
         else
-          result.within("in flight at the end, " + name, 0.05, 3 * cosine - 2 + 0.01, in_flight,
-                        "edges are rounded over a voxel and let some of it out, the more the longer it is followed");
+          // Corners of a sampled cube are cut within half a voxel of its edges: 2 / 18 of a face's width. What meets
+          // them may get out, so at least (1 - 2/18) is held per reflection: by marched rays 16 times, by photons until
+          // they are stopped.
+          result.within("in flight at the end, " + name,
+                        std::string(solver) == "steady" ? (3 * cosine - 2) * std::pow(1 - 2.0 / 18, 16) : 0.05,
+                        3 * cosine - 2 + 0.01, in_flight,
+                        "at most what ideal edges hold; cut ones let some of it out at every reflection");
         must_warn(result, name, found.warnings, "trapped by total reflection");
       }
     }

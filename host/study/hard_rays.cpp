@@ -40,10 +40,15 @@ Case aligned_case() {
       HardScene scene{empty_domain(glm::ivec3(16), 1), {sunlight(row.direction)}};
       set_ambient(scene.medium, make_material({.sigma_a = glm::vec3(static_cast<float>(depth / 16))}));
       const HardRun found = run_hard(context, result, name, scene, hard_settings("steady"));
-      result.relative("T, steady, " + name, row.expected, escaped_share(found.run), 0.015,
-                      "rays half a voxel apart; chords end in edges");
+      const bool straight = row.direction.x * row.direction.z == 0 && row.direction.y * row.direction.z == 0;
+      const double bound = straight ? 1e-5 : 2e-3;
+      const std::string why =
+          straight ? "all chords are equal; single precision"
+                   : "midpoint rule over 32 rays along edges where T falls by a factor of 10: 1 / 24 (2.8 / 32)^2 "
+                     "of it, and as much again for the rim";
+      result.relative("T, steady, " + name, row.expected, escaped_share(found.run), bound, why);
       const HardRun photons = run_hard(context, result, name, scene, hard_settings("photon", 20000));
-      result.relative("T, photon, " + name, row.expected, escaped_share(photons.run), 0.015,
+      result.relative("T, photon, " + name, row.expected, escaped_share(photons.run), bound,
                       "photons start on the same rays", "1",
                       photons.run.solution.report.photon->escaped.error.x / entered(photons.run));
       scene.medium.materials[0] = make_material({.sigma_s = glm::vec3(0.3f), .sigma_a = glm::vec3(0.01f), .eta = 1.5f});

@@ -35,8 +35,10 @@ Case duct_case() {
             ours += found.run.fluence({x, y, z});
             theirs += exact.run.fluence({x, y, z});
           }
-      result.within("fluence on the axis / photons, z = " + std::to_string(end), 0.6, 1.6, ours / theirs,
-                    "diffusion through a void");
+      result.within("fluence on the axis / photons, z = " + std::to_string(end), end > 6 ? 0.95 : 0.75, 1.14,
+                    ours / theirs,
+                    end > 6 ? "numerics section 4: 1.01 to 1.14; photons within 3 %"
+                            : "within two mean free paths of the lamp, where diffusion is not valid");
     }
   };
   return c;

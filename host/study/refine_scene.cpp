@@ -111,13 +111,14 @@ SceneRefinement refine_scene(cl::Session& session, const ReadScene& read, const 
   const Scene base = base_scene(parameter, read(grids ? std::optional<int>(int(first)) : std::nullopt));
   if (settings.picture && !base.has_camera) throw InputError(base.path + ": has no [camera], so there is no picture");
 
-  SceneRefinement out{.parameter = parameter, .levels = {}};
+  SceneRefinement out{.parameter = parameter, .levels = {}, .beside = settings.beside};
   std::vector<Answer> answers;
   for (const double level : settings.levels) {
     char name[64];
     std::snprintf(name, sizeof name, "%s %g", parameter.name.c_str(), level);
     tell(name);
-    const Scene scene = scene_at(parameter, level, first, base);
+    Scene scene = scene_at(parameter, level, first, base);
+    if (settings.beside) scene = scene_at(settings.beside->parameter, settings.beside->level, 0, std::move(scene));
     std::vector<std::vector<StageTime>> times;
     SceneLevel result{.level = level, .h = h_of(parameter, level, scene)};
     for (int i = 0; i < std::max(1, settings.repeat); ++i) {
@@ -187,7 +188,8 @@ SceneRefinement refine_scene(cl::Session& session, const ReadScene& read, const 
     fitted.push_back({level.h, level.fluence.rel_l2});
   }
   out.fit = fitted_order(fitted);
-  out.judged = parameter.order > 0 && (!photons || parameter.name == "photons");
+  // Beside a coarse level of another parameter the error need not fall.
+  out.judged = parameter.order > 0 && (!photons || parameter.name == "photons") && !settings.beside;
   return out;
 }
 

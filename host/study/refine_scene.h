@@ -36,6 +36,12 @@ struct RefineSettings {
   bool picture = false;         ///< look at each level, and compare the pictures too
   bool against_photon = false;  ///< else against finer levels
   ReferenceSettings reference;  ///< of the photons
+  /// A second parameter at one of its levels; the reference keeps it fine.
+  struct Beside {
+    SceneParameter parameter;
+    double level = 0;
+  };
+  std::optional<Beside> beside = {};
 };
 
 struct SceneLevel {
@@ -44,19 +50,20 @@ struct SceneLevel {
   std::optional<ReferenceErrors> image = {};
   std::optional<double> flip = {};
   std::vector<StageTime> stages = {};  ///< median of the repeats
-  double seconds = 0;             ///< of all stages
-  std::uint64_t peak_memory = 0;  ///< [bytes]
+  double seconds = 0;                  ///< of all stages
+  std::uint64_t peak_memory = 0;       ///< [bytes]
   std::optional<ViewImage> picture = {};
 };
 
 struct SceneRefinement {
   SceneParameter parameter;
   std::string reference = {};  ///< what the errors are against
-  double noise = 0;       ///< of the reference, relative L2 of the fluence
+  double noise = 0;            ///< of the reference, relative L2 of the fluence
   std::vector<SceneLevel> levels = {};
   std::optional<FittedOrder> fit = {};  ///< of the fluence's relative L2
-  bool judged = false;             ///< an order is expected here
+  bool judged = false;                  ///< an order is expected here
   std::optional<ViewImage> reference_picture = {};
+  std::optional<RefineSettings::Beside> beside = {};  ///< refined together with it
 
   bool passed() const { return !judged || (fit && fit->order >= parameter.least_order); }
 };

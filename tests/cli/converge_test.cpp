@@ -2,7 +2,9 @@
 // turbid converge and render --error as a user runs them.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/support/run.h"
 #include "tests/support/small_scene.h"
@@ -33,6 +35,8 @@ TEST(Converge, what_cannot_be_refined_is_one_line_and_status_2) {
   expect_refused(run({"s.toml", "--over", "step", "--levels", "0.5"}), "--levels 0.5: expected two or more");
   expect_refused(run({"s.toml", "--over", "voxel_size", "--levels", "16,24"}), "whole multiples");
   expect_refused(run({"s.toml"}), "--over PARAMETER");
+  expect_refused(run({"s.toml", "--over", "step,voxel_size"}), "--over step,voxel_size: expected as the second");
+  expect_refused(run({"s.toml", "--over", "step,rays,inner"}), "expected one or two parameters");
   expect_refused(run({"s.toml", "s.toml", "--over", "step"}), "expected one case or scene");
   expect_refused(run({"s.toml", "--against", "truth"}), "--against truth: expected photon");
   EXPECT_EQ(place.content(), Words{"s.toml"});
@@ -48,6 +52,26 @@ TEST(Converge, refining_voxels_of_a_milky_ball_meets_the_expected_order_and_writ
   EXPECT_NE(outcome.out.find("Observed order"), std::string::npos);
   EXPECT_EQ(place.content(),
             (Words{"s.toml", "v/", "v/out.html", "v/out.json", "v/out.levels.csv", "v/out.stages.csv"}));
+}
+
+TEST(Converge, two_parameters_make_a_table_whose_finest_corner_errs_least) {
+  const Workplace place;
+  place.write("s.toml", kMilkyBall);
+  const Outcome outcome = place.turbid({"converge", "s.toml", "--over", "voxel_size,step", "--levels", "16,32",
+                                        "--levels2", "2,0.5", "-q", "-o", "two"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  std::ifstream table(place.path("two.both.csv"));
+  std::string line, cell;
+  std::vector<std::vector<double>> errors;
+  std::getline(table, line);
+  while (std::getline(table, line)) {
+    std::stringstream cells(line);
+    for (errors.emplace_back(); std::getline(cells, cell, ',');) errors.back().push_back(std::stod(cell));
+  }
+  ASSERT_EQ(errors.size(), 2u);
+  ASSERT_EQ(errors[1].size(), 3u);  // the voxels, and an error per step
+  EXPECT_LT(errors[1][2], errors[0][2]);
+  EXPECT_LT(errors[1][2], errors[1][1]);
 }
 
 TEST(RenderError, chooses_settings_says_which_and_reaches_the_asked_error) {

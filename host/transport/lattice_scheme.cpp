@@ -17,13 +17,40 @@ constexpr double kRounding = 1e-7;
 
 }  // namespace
 
+bool LatticeScheme::choose_scale(const std::vector<float>& q) {
+  bool changed = false;
+  const std::size_t stride = diffusion_.stride();
+  for (int c = 0; half() && c < diffusion_.channels; ++c) {
+    const float brightest = *std::max_element(q.begin() + c * stride, q.begin() + (c + 1) * stride);
+    if (brightest <= 0) continue;
+    const double scale = std::exp2(-6 - std::ilogb(brightest)), ratio = scale / scale_[c];
+    if (sweeps_ > 0 && ratio < 64 && ratio > 1.0 / 64) continue;
+    changed |= scale != scale_[c];
+    scale_[c] = scale;
+  }
+  return changed;
+}
+
+double LatticeScheme::change_per_sweep(glm::dvec3& last_total) {
+  const Change change = read_change();
+  if (!half() || !std::isfinite(change.relative)) return change.relative;
+  double worst = 0;
+  for (int c = 0; c < diffusion_.channels; ++c) {
+    if (change.total[c] > 0) worst = std::max(worst, std::abs(change.total[c] - last_total[c]) / change.total[c]);
+  }
+  last_total = change.total;
+  return worst / sweeps_per_test();
+}
+
 double LatticeScheme::relax(const std::function<void(double)>& progress) {
   double previous = 0, estimate = 1;
+  const double rest = half() ? kRounding / sweeps_per_test() : kRounding;
+  glm::dvec3 last_total(0);
   int small = 0;
   while (sweeps() < settings_.max_sweeps && diffusion_.blocks.count() > 0) {
     enqueue_sweeps(sweeps_per_test());
-    const double change = read_change().relative;
-    if (change < kRounding) {
+    const double change = change_per_sweep(last_total);
+    if (change < rest) {
       // As steady as single precision can be: the ratio of successive changes means nothing any more.
       estimate = change;
       break;

@@ -180,12 +180,6 @@ static void step_row(global Stored* slots, global Stored* rest, MEDIUM_ARGUMENTS
       lost += before - after;
       arrived += before;
       PUT_EIGHT(psi) = value;
-      if (k == 0 && end.x < 0) escaped_xm = (1.0f - end_wall.x) * f.xm.s0;
-      if (k == last && end.y < 0) escaped_xp = (1.0f - end_wall.y) * f.xp.s7;
-      escaped_ym += escaped_over(ym, f.ym);
-      escaped_yp += escaped_over(yp, f.yp);
-      escaped_zm += escaped_over(zm, f.zm);
-      escaped_zp += escaped_over(zp, f.zp);
     }
     float8 rounded;
     if (crossing) {
@@ -194,8 +188,29 @@ static void step_row(global Stored* slots, global Stored* rest, MEDIUM_ARGUMENTS
       if (k == last) above.s7 = end.y < 0 ? put(end_wall.y * f.xp.s7, up_x + at + 7) : put(f.xp.s7, down_x + end.y);
       rounded = below + above + write_side(ym, f.ym) + write_side(yp, f.yp) + write_side(zm, f.zm) + write_side(zp, f.zp);
     } else {
-      rounded = PUT_EIGHT_AT(f.xm, down_x + at) + PUT_EIGHT_AT(f.xp, up_x + at) + PUT_EIGHT_AT(f.ym, down_y + at) +
-                PUT_EIGHT_AT(f.yp, up_y + at) + PUT_EIGHT_AT(f.zm, down_z + at) + PUT_EIGHT_AT(f.zp, up_z + at);
+      Six e;
+      e.xm = PUT_EIGHT_AT(f.xm, down_x + at);
+      e.xp = PUT_EIGHT_AT(f.xp, up_x + at);
+      e.ym = PUT_EIGHT_AT(f.ym, down_y + at);
+      e.yp = PUT_EIGHT_AT(f.yp, up_y + at);
+      e.zm = PUT_EIGHT_AT(f.zm, down_z + at);
+      e.zp = PUT_EIGHT_AT(f.zp, up_z + at);
+      rounded = sum_of(e);
+      // What has been stored is what meets the walls.
+      f.xm -= e.xm;
+      f.xp -= e.xp;
+      f.ym -= e.ym;
+      f.yp -= e.yp;
+      f.zm -= e.zm;
+      f.zp -= e.zp;
+    }
+    if (measure) {
+      if (k == 0 && end.x < 0) escaped_xm = (1.0f - end_wall.x) * f.xm.s0;
+      if (k == last && end.y < 0) escaped_xp = (1.0f - end_wall.y) * f.xp.s7;
+      escaped_ym += escaped_over(ym, f.ym);
+      escaped_yp += escaped_over(yp, f.yp);
+      escaped_zm += escaped_over(zm, f.zm);
+      escaped_zp += escaped_over(zp, f.zp);
     }
 #if TURBID_HALF
     rounded = put8(rounded, waiting);

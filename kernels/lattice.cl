@@ -267,24 +267,50 @@ static void add_arrivals(SPACE float* slots, const Faces* in) {
   }
 }
 
+// 1 where what departs to a slot's side stays in the block, else 0: the neighbour has that from the interface, not from the slot.
+static Lanes stays(int v, int slot) {
+  const Lanes all = (Lanes)(1.0f);
+  const Row no = (Row)(0.0f), yes = (Row)(1.0f);
+  const int z = v / PER_PLANE, j = v % PER_PLANE;
+  if (slot < 2) return as_float16(as_int16(all) & (slot == 0 ? NOT_FIRST : NOT_LAST));
+  if (slot == 4) return z > 0 ? all : (Lanes)(0.0f);
+  if (slot == 5) return z < EDGE - 1 ? all : (Lanes)(0.0f);
+#if EDGE == 8
+  if (slot == 2) return j == 0 ? (Lanes)(no, yes) : all;
+  return j == PER_PLANE - 1 ? (Lanes)(yes, no) : all;
+#else
+  return slot == 2 ? (Lanes)(no, yes, yes, yes) : (Lanes)(yes, yes, yes, no);
+#endif
+}
+
 #if TURBID_HALF
-// A block's populations with what waits in its voxels.
-static void take(float* slots, const global half* stored, const global half* rest) {
+// A block's populations with what waits in its voxels, shared out among those that stay in the block: after a local step all but
+// the departures over its faces, after a crossing one all.
+static void take(float* slots, const global half* stored, const global half* rest, int after_local) {
   for (int v = 0; v < VECTORS; ++v) {
-    const Lanes share = vload_half16(v, rest) * (1.0f / 6.0f);
-    for (int i = 0; i < 6; ++i) SLOT_LANES(v, slots + i * VOXELS) = vload_half16(v, stored + i * VOXELS) + share;
+    Lanes count = (Lanes)(6.0f);
+    if (after_local) {
+      count = (Lanes)(0.0f);
+      for (int i = 0; i < 6; ++i) count += stays(v, i);
+    }
+    const Lanes share = vload_half16(v, rest) / count;
+    for (int i = 0; i < 6; ++i) {
+      const Lanes more = after_local ? share * stays(v, i) : share;
+      SLOT_LANES(v, slots + i * VOXELS) = vload_half16(v, stored + i * VOXELS) + more;
+    }
   }
 }
 
 // Puts them back; returns what is lost for good.
-static Lanes put_back(float* slots, global half* stored, global half* rest) {
+static Lanes put_back(float* slots, global half* stored, global half* rest, int after_local) {
   Lanes lost = (Lanes)(0.0f);
   for (int v = 0; v < VECTORS; ++v) {
     Lanes waits = (Lanes)(0.0f);
     for (int i = 0; i < 6; ++i) {
       const Lanes f = SLOT_LANES(v, slots + i * VOXELS);
       vstore_half16(f, v, stored + i * VOXELS);
-      waits += f - vload_half16(v, stored + i * VOXELS);
+      const Lanes rounded = f - vload_half16(v, stored + i * VOXELS);
+      waits += after_local ? rounded * stays(v, i) : rounded;
     }
     vstore_half16(waits, v, rest);
     lost += waits - vload_half16(v, rest);
@@ -369,7 +395,7 @@ kernel void sweep(const global float* collision, const global float2* even, cons
 #if TURBID_HALF
   Lanes taken[6 * VECTORS];
   float* slots = (float*)taken;
-  take(slots, populations + index * 6 * VOXELS, rest + index * VOXELS);
+  take(slots, populations + index * 6 * VOXELS, rest + index * VOXELS, !local_first);
 #else
   global float* slots = populations + index * 6 * VOXELS;
 #endif
@@ -388,38 +414,46 @@ kernel void sweep(const global float* collision, const global float2* even, cons
   send(&sent, interfaces_out + ((size_t)channel * (blocks + 1) + block_index) * 6 * ROWS, 1.0f / (float)inner);
   vstore4((float4)(sum16(of_last.change), sum16(of_last.total), sum16(of_last.lost), sum16(of_last.after)), 0, sums + 5 * index);
 #if TURBID_HALF
-  sums[5 * index + 4] = sum16(put_back(slots, populations + index * 6 * VOXELS, rest + index * VOXELS));
+  sums[5 * index + 4] = sum16(put_back(slots, populations + index * 6 * VOXELS, rest + index * VOXELS,
+                                       (local_first ^ (inner & 1)) == 0));
 #else
   sums[5 * index + 4] = 0.0f;
 #endif
 }
 
-// What is under way after a local step, per block: sums[channel][block][7] = all departures, and those that escape through boundary
+// What is under way after a sweep of one local step, per block: sums[channel][block][7] = all departures, and those that escape through boundary
 // faces towards -x, +x, -y, +y, -z, +z. open_towards[face]: 0..5, or -1 for faces between two active voxels.
 kernel void departures(const global int* wall_block, const global float* walls, const global int* first_face,
                        const global int* faces, const global int* open_towards, const global float4* shares,
-                       const global Stored* populations, const global Stored* rest, global float* sums, int blocks, int wall_blocks, int channels) {
+                       const global float* interfaces, const global Stored* populations, const global Stored* rest,
+                       global float* sums, int blocks, int wall_blocks, int channels) {
   const int block = get_global_id(0), channel = get_global_id(1);
   if (block >= blocks || channel >= channels) return;
   const size_t index = (size_t)channel * blocks + block;
 #if TURBID_HALF
   Lanes taken[6 * VECTORS];
   float* slots = (float*)taken;
-  take(slots, populations + index * 6 * VOXELS, rest + index * VOXELS);
+  take(slots, populations + index * 6 * VOXELS, rest + index * VOXELS, 1);
 #else
   const global float* slots = populations + index * 6 * VOXELS;
 #endif
   Lanes total = (Lanes)(0.0f);
-  for (int v = 0; v < 6 * VECTORS; ++v) total += SLOT_LANES(v, slots);
+  for (int v = 0; v < VECTORS; ++v) {
+    for (int i = 0; i < 6; ++i) total += stays(v, i) * SLOT_LANES(v, slots + i * VOXELS);
+  }
   float escaped[6] = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
-  if (wall_block[block] >= 0) {
-    const global float* own = walls + ((size_t)channel * wall_blocks + wall_block[block]) * 12 * ROWS;
-    for (int i = 0; i < 6 * ROWS; ++i) {
-      const int face = i / ROWS, axis = face / 2, row = i % ROWS, layer = face & 1 ? EDGE - 1 : 0;
-      const int a = row % EDGE, b = row / EDGE;
-      const int place = axis == 0 ? layer + EDGE * row : axis == 1 ? a + EDGE * (layer + EDGE * b) : row + ROWS * layer;
-      if (own[6 * ROWS + i] == 0.0f) escaped[face] += (1.0f - own[i]) * slots[face * VOXELS + place];
-    }
+  // Over a face the voxel's own share comes from its slot, the neighbour's from the interface.
+  const global float* own = wall_block[block] >= 0 ? walls + ((size_t)channel * wall_blocks + wall_block[block]) * 12 * ROWS : 0;
+  const global float* sent = interfaces + ((size_t)channel * (blocks + 1) + block) * 6 * ROWS;
+  float over_faces = 0.0f;
+  for (int i = 0; i < 6 * ROWS; ++i) {
+    const int face = i / ROWS, axis = face / 2, row = i % ROWS, layer = face & 1 ? EDGE - 1 : 0;
+    const int a = row % EDGE, b = row / EDGE;
+    const int place = axis == 0 ? layer + EDGE * row : axis == 1 ? a + EDGE * (layer + EDGE * b) : row + ROWS * layer;
+    const float kept = own ? own[i] : 0.0f, leaves = slots[face * VOXELS + place];
+    const int open = own && own[6 * ROWS + i] == 0.0f;
+    over_faces += open ? leaves : kept * leaves + (1.0f - kept) * sent[(face ^ 1) * ROWS + row];
+    if (open) escaped[face] += (1.0f - kept) * leaves;
   }
   for (int i = first_face[block]; i < first_face[block + 1]; ++i) {
     if (open_towards[i] < 0) continue;
@@ -429,6 +463,6 @@ kernel void departures(const global int* wall_block, const global float* walls, 
                                : (1.0f - k.x) * slots[2 * axis * VOXELS + ((face >> 9) & 511)];
     escaped[open_towards[i]] += leaves;
   }
-  sums[7 * index] = sum16(total);
+  sums[7 * index] = sum16(total) + over_faces;
   for (int face = 0; face < 6; ++face) sums[7 * index + 1 + face] = escaped[face];
 }

@@ -143,8 +143,8 @@ LatticeEnergy Lattice::read_energy() {
   cl::Queue& queue = session_.lattice_queue();
   if (!crossing_next_) enqueue_sweeps(1, 1);
   departures_.enqueue(queue, {static_cast<std::size_t>(blocks_), static_cast<std::size_t>(channels_)}, kLocal,
-                      wall_block_, walls_, first_face_, faces_, open_towards_, shares_, populations_, rest_, departing_,
-                      blocks_, medium_.wall_blocks, channels_);
+                      wall_block_, walls_, first_face_, faces_, open_towards_, shares_, interfaces_[sweeps_ & 1],
+                      populations_, rest_, departing_, blocks_, medium_.wall_blocks, channels_);
   enqueue_sweeps(1, 1);
   const std::vector<float> departing = session_.read(queue, departing_), sums = session_.read(queue, sums_);
   LatticeEnergy result;
@@ -154,7 +154,7 @@ LatticeEnergy Lattice::read_energy() {
       const std::size_t at = static_cast<std::size_t>(c) * blocks_ + block;
       const float *last = sums.data() + kSums * at, *before = departing.data() + kDepartures * at;
       absorbed += last[2];
-      // Storing comes after the sum of what departs.
+      // Storing comes after the sum of what departs, and does not touch what was sent.
       result.stored[c] += (static_cast<double>(last[3]) - last[4] - before[0]) / scale_[c];
       result.rounding[c] += last[4] / scale_[c];
       for (int face = 0; face < 6; ++face) result.escaped[face][c] += before[1 + face] / scale_[c];

@@ -43,7 +43,7 @@ class Lattice : public LatticeScheme {
   glm::dvec3 emitted_{0};  ///< sum of the source [W]
   cl::Program program_;
   cl::Kernel<F, F2, F, I, I, F, I, I, F4, I, F, F, Bytes, Bytes, F, F, int, int, int, int, int> sweep_;
-  cl::Kernel<I, F, I, I, I, F4, Bytes, Bytes, F, int, int, int> departures_;
+  cl::Kernel<I, F, I, I, I, F4, F, Bytes, Bytes, F, int, int, int> departures_;
   Bytes populations_, rest_;
   F collision_, source_, walls_, fluence_, sums_, departing_;
   F interfaces_[2];

@@ -14,6 +14,7 @@ namespace turbid {
 namespace {
 
 constexpr double kRounding = 1e-7;
+constexpr int kMostStored = 12;  // binary digits of the largest fluence in half precision, which ends at 16
 
 }  // namespace
 
@@ -21,10 +22,23 @@ bool LatticeScheme::choose_scale(const std::vector<float>& q) {
   bool changed = false;
   const std::size_t stride = diffusion_.stride();
   for (int c = 0; half() && c < diffusion_.channels; ++c) {
-    const float brightest = *std::max_element(q.begin() + c * stride, q.begin() + (c + 1) * stride);
+    double brightest = 0, total = 0, least_absorption = 1, thickest = 0;
+    for (std::size_t i = c * stride; i < (c + 1) * stride; ++i) {
+      if (diffusion_.region[i % stride] < 0) continue;
+      brightest = std::max(brightest, static_cast<double>(q[i]));
+      total += q[i];
+      least_absorption = std::min(least_absorption, static_cast<double>(diffusion_.s_a[i]));
+      thickest = std::max(thickest, static_cast<double>(diffusion_.s[i]));
+    }
     if (brightest <= 0) continue;
-    const double scale = std::exp2(-6 - std::ilogb(brightest)), ratio = scale / scale_[c];
-    if (sweeps_ > 0 && ratio < 64 && ratio > 1.0 / 64) continue;
+    // The fluence is at most q / s_a, what builds up over the domain's width n by diffusion, 4 (1 + s) n^2 q, or all
+    // the power times the peak of one voxel's answer, 2 (1 + s).
+    const glm::ivec3 n = diffusion_.frame.voxels;
+    const double width = std::max({n.x, n.y, n.z}), local = 1 + thickest;
+    const double build_up = std::min(1 / std::max(least_absorption, 1e-12), 4 * local * width * width) + local;
+    const double most = std::min(brightest * build_up, 2 * local * total);
+    const double scale = std::exp2(kMostStored - std::ilogb(most)), ratio = scale / scale_[c];
+    if (sweeps_ > 0 && ratio < 8 && ratio > 1.0 / 8) continue;
     changed |= scale != scale_[c];
     scale_[c] = scale;
   }

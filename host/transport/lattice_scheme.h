@@ -62,9 +62,8 @@ class LatticeScheme {
   /// Bytes of one stored population.
   std::size_t stored_bytes() const { return half() ? 2 : 4; }
   /// Chooses scale_ for source q [channel][block and voxel of the diffusion medium] where populations are stored in
-  /// half precision: the brightest voxel's source becomes 2^-6, which leaves a factor 4e6 up to what half precision
-  /// holds and 3e5 down to where it loses digits. Keeps the scale in use while q lies within a factor 64 of it; returns
-  /// whether it changed.
+  /// half precision, so that the largest fluence that q can lead to fits. Keeps the scale in use, once there are
+  /// populations, while it lies within a factor of 8; returns whether it changed.
   bool choose_scale(const std::vector<float>& q);
   /// After the last sweep of relax: whatever read_energy needs.
   virtual void settle() {}

@@ -121,8 +121,15 @@ static void to_rows_above(Lanes f, SPACE float* slot, int v) {
 
 // Summed |change| of the fluence, the fluence, phi - phi', phi'.
 typedef struct {
-  Lanes change, total, lost, after;
+  Lanes change, total, lost, after, after_low;
 } Sums;
+
+// Compensated (Kahan): what is under way is summed before and after a step, and half precision's equal values round alike.
+static void add_exactly(Lanes* sum, Lanes* low, Lanes value) {
+  const Lanes term = value - *low, larger = *sum + term;
+  *low = (larger - *sum) - term;
+  *sum = larger;
+}
 
 // One step. in: arrivals over the faces; wall: share of a voxel's departure that comes back. A crossing step leaves in the
 // end voxels' slots what arrives there next: own share, and `keep` (1, or 0 after the last step) of what comes in.
@@ -177,7 +184,7 @@ __attribute__((always_inline)) static void step(SPACE float* slots, const Block*
       sums->change += fabs(value - LANES_OF(v, fluence));
       sums->total += value;
       sums->lost += before - after;
-      sums->after += after;
+      add_exactly(&sums->after, &sums->after_low, after);
       LANES(v, fluence) = value;
     }
     sent->x[0][v] += f.xm;
@@ -403,7 +410,7 @@ kernel void sweep(const global float* collision, const global float2* even, cons
   const global float4* share = shares + (size_t)channel * first_face[blocks];
   const int begin = first_face[block_index], end = first_face[block_index + 1];
   Sums of_last;
-  of_last.change = of_last.total = of_last.lost = of_last.after = (Lanes)(0.0f);
+  of_last.change = of_last.total = of_last.lost = of_last.after = of_last.after_low = (Lanes)(0.0f);
   if (local_first) add_arrivals(slots, &in);
   for (int i = 0; i < inner; ++i) {
     const int crossing = (i & 1) == local_first, last = i == inner - 1;
@@ -437,9 +444,9 @@ kernel void departures(const global int* wall_block, const global float* walls, 
 #else
   const global float* slots = populations + index * 6 * VOXELS;
 #endif
-  Lanes total = (Lanes)(0.0f);
+  Lanes total = (Lanes)(0.0f), low = total;
   for (int v = 0; v < VECTORS; ++v) {
-    for (int i = 0; i < 6; ++i) total += stays(v, i) * SLOT_LANES(v, slots + i * VOXELS);
+    for (int i = 0; i < 6; ++i) add_exactly(&total, &low, stays(v, i) * SLOT_LANES(v, slots + i * VOXELS));
   }
   float escaped[6] = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   // Over a face the voxel's own share comes from its slot, the neighbour's from the interface.

@@ -109,7 +109,8 @@ TEST_F(Commands, half_precision_storage_tells_what_it_took_and_how_far_it_errs) 
   for (const char* edge : {"8", "0"}) {
     const auto solved = [&](const char* storage) {
       return json_of(place.turbid({"solve", "ball.toml", "-q", "--json", "--solver", "lattice", "-D",
-                                   std::string("solver.storage=") + storage, "-D", std::string("solver.lattice.block_edge=") + edge}));
+                                   std::string("solver.storage=") + storage, "-D",
+                                   std::string("solver.lattice.block_edge=") + edge}));
     };
     const Json full = solved("float"), half = solved("half");
     EXPECT_TRUE(half["energy"]["balanced"]);

@@ -209,7 +209,7 @@ TEST(Lattice, HalfPrecisionStorageStaysWithinItsErrorAndBalancesItsRounding) {
         const auto full = make_lattice(test::session(), medium, s);
         s.storage = Storage::half_precision;
         const auto half = make_lattice(test::session(), medium, s);
-        EXPECT_LT(half->device_bytes(), 0.85 * full->device_bytes());
+        EXPECT_LT(half->device_bytes(), 0.9 * full->device_bytes());
         for (LatticeScheme* lattice : {full.get(), half.get()}) {
           lattice->set_source(q);
           lattice->relax();

@@ -126,7 +126,9 @@ Experiment lights(cl::Session& session, const BenchSettings& settings) {
 }  // namespace
 
 const std::vector<NamedExperiment>& scaling_experiments() {
-  static const std::vector<NamedExperiment> list{{"voxels", voxels}, {"fraction", fraction}, {"pixels", pixels}, {"lights", lights}};
+  static const std::vector<NamedExperiment> list{
+      {"voxels", voxels}, {"fraction", fraction}, {"pixels", pixels}, {"lights", lights},
+      {"specialised", specialised_or_general}, {"colours", colours_together_or_apart}};
   return list;
 }
 

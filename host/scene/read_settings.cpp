@@ -19,12 +19,13 @@ const toml::table& sub_table(const TableReader& solver, std::string_view key) {
 }
 
 MarchSettings read_march(const TableReader& table) {
-  table.allow({"step_in_voxels", "rays_per_face", "max_steps", "batch_steps", "max_bounces", "min_power"});
+  table.allow({"step_in_voxels", "rays_per_face", "max_steps", "batch_steps", "workers", "max_bounces", "min_power"});
   MarchSettings s;
   s.step_in_voxels = table.number("step_in_voxels", Range::half_open(0, 2, "voxels"), s.step_in_voxels);
   s.rays_per_face = table.number("rays_per_face", Range::half_open(0, 64), s.rays_per_face);
   s.max_steps = count(table, "max_steps", 1, 1 << 30, s.max_steps);
   s.batch_steps = count(table, "batch_steps", 1, 1 << 30, s.batch_steps);
+  s.workers = count(table, "workers", 0, 4096, s.workers);
   s.max_bounces = count(table, "max_bounces", 0, 1 << 16, s.max_bounces);
   s.min_power = table.number("min_power", Range::closed(0, 0.1), s.min_power);
   return s;

@@ -11,6 +11,7 @@ struct MarchSettings {
   float rays_per_face = 4.0f;       ///< light rays per voxel face where they enter [-], in (0, 64]
   int max_steps = 4096;             ///< a ray still inside after this many steps is reported as in flight; >= 1
   int batch_steps = 256;            ///< steps k of one batch (Bernabei et al. III-B); >= 1
+  int workers = 0;                  ///< work-items that take rays where the device is a CPU, 0: one per core; in [0, 4096]
   int max_bounces = 16;             ///< interfaces that one path may meet; what is left then is reported as in flight
   float min_power = 1e-4f;          ///< a branch weaker than this fraction of its ray's first power ends [-], in [0, 0.1]
 };

@@ -73,10 +73,8 @@ void run_refinement(const Refinement& refinement, CaseContext& context, CaseResu
   const std::string variant = refinement.variant.empty() ? "" : ", " + refinement.variant;
   ErrorSeries series{refinement.parameter + variant, refinement.unit,      refinement.error_name(), {}, {},
                      refinement.order_low,           refinement.order_high};
-  std::vector<Sample> values;
   for (const double level : levels) {
     const RefinedLevel found = refinement.run(context, level);
-    values.push_back({found.h, found.value});
     series.levels.push_back({found.h, refinement.error(found)});
     result.note_imbalance(found.energy_imbalance);
     for (const Refinement::Limit& limit : refinement.limits) {
@@ -89,10 +87,6 @@ void run_refinement(const Refinement& refinement, CaseContext& context, CaseResu
                         found.standard_error);
     }
   }
-  if (refinement.extrapolated_tolerance > 0 && values.size() > 1)
-    result.relative(refinement.quantity + ", extrapolated" + variant, refinement.exact,
-                    richardson(values[values.size() - 2], values.back(), refinement.order).value,
-                    refinement.extrapolated_tolerance, "Richardson from the two finest levels");
   if (refinement.order == 0) return;
   series.fit = fitted_order(series.levels);
   result.series.push_back(series);
@@ -115,8 +109,8 @@ const std::vector<Case>& cases() {
     for (const auto make :
          {study::lattice_cases, study::wave_cases, study::boundary_cases, study::beam_cases, study::path_cases,
           study::surface_cases, study::transport_cases, study::view_cases, study::stopping_cases,
-           study::hard_media_cases, study::hard_contrast_cases, study::hard_void_cases, study::hard_index_cases,
-           study::hard_ray_cases, study::hard_shape_cases})
+          study::hard_media_cases, study::hard_contrast_cases, study::hard_void_cases, study::hard_index_cases,
+          study::hard_ray_cases, study::hard_shape_cases})
       for (Case& one : make()) list.push_back(std::move(one));
     const auto rank = [](const Case& c) { return c.number > 0 ? c.number : std::numeric_limits<int>::max(); };
     std::stable_sort(list.begin(), list.end(), [&](const Case& a, const Case& b) { return rank(a) < rank(b); });

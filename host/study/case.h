@@ -109,7 +109,6 @@ struct Refinement {
   std::string quantity = {};                 ///< a number with a known value, "" if there is none
   double exact = kNone;                      ///< its value
   std::vector<Limit> limits = {};
-  double extrapolated_tolerance = 0;  ///< relative, of the quantity that Richardson finds at h = 0; 0: not asked
   std::function<RefinedLevel(CaseContext&, double level)> run;
 
   double error(const RefinedLevel&) const;

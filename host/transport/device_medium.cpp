@@ -13,22 +13,31 @@ namespace {
 
 constexpr int kTileEdge = TURBID_TILE_EDGE;
 constexpr int kTileNodes = TURBID_TILE_NODES;
-constexpr int kHaloEdge = kTileEdge + 2;  // one node more on each side, for central differences
+/// Nodes of a tile with `halo` more on each side.
+constexpr int halo_edge(int halo) { return kTileEdge + 2 * halo; }
+constexpr int halo_nodes(int halo) { return halo_edge(halo) * halo_edge(halo) * halo_edge(halo); }
+constexpr int kDistanceHalo = 1, kIndexHalo = 2;
 
 glm::ivec3 block_coordinates(int block, glm::ivec3 blocks) {
   return {block % blocks.x, (block / blocks.x) % blocks.y, block / (blocks.x * blocks.y)};
 }
 
-/// (gradient, value) per node from values with a halo of one node.
-void with_gradient(const std::vector<float>& halo, float* out) {
-  auto at = [&](int x, int y, int z) { return halo[x + kHaloEdge * (y + kHaloEdge * z)]; };
-  for (int z = 1; z <= kTileEdge; ++z) {
-    for (int y = 1; y <= kTileEdge; ++y) {
-      for (int x = 1; x <= kTileEdge; ++x, out += 4) {
-        out[0] = 0.5f * (at(x + 1, y, z) - at(x - 1, y, z));
-        out[1] = 0.5f * (at(x, y + 1, z) - at(x, y - 1, z));
-        out[2] = 0.5f * (at(x, y, z + 1) - at(x, y, z - 1));
-        out[3] = at(x, y, z);
+/// (gradient, value) per node from values with a halo, by central differences of second order (halo 1) or fourth (halo 2).
+/// Second order adds h^2/6 (u_xxx, u_yyy, u_zzz) to the gradient, which is no gradient of anything: rays of different
+/// directions then have different speeds at one place, and power is not kept along them.
+template <int halo>
+void with_gradient(const std::vector<float>& values, float* out) {
+  constexpr int edge = halo_edge(halo), strides[3] = {1, edge, edge * edge};
+  for (int z = halo; z < halo + kTileEdge; ++z) {
+    for (int y = halo; y < halo + kTileEdge; ++y) {
+      for (int x = halo; x < halo + kTileEdge; ++x, out += 4) {
+        const float* at = values.data() + x + edge * (y + edge * z);
+        for (int axis = 0; axis < 3; ++axis) {
+          const int d = strides[axis];
+          out[axis] = 0.5f * (at[d] - at[-d]);
+          if constexpr (halo == 2) out[axis] = (4.0f * out[axis] - 0.25f * (at[2 * d] - at[-2 * d])) / 3.0f;
+        }
+        out[3] = at[0];
       }
     }
   }
@@ -149,9 +158,10 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
   std::vector<float> distances(static_cast<std::size_t>(distance_tiles) * kTileNodes * 4);
   for (int r = 1; r < regions; ++r) {
     for_each_tile(maps, device.region_params[r].distance_set, block_count, [&](int block, int tile) {
-      std::vector<float> halo(kHaloEdge * kHaloEdge * kHaloEdge);
-      medium.read_signed_distance(r, 8 * block_coordinates(block, blocks) - 1, glm::ivec3(kHaloEdge), halo);
-      with_gradient(halo, distances.data() + static_cast<std::size_t>(tile) * kTileNodes * 4);
+      std::vector<float> halo(halo_nodes(kDistanceHalo));
+      medium.read_signed_distance(r, 8 * block_coordinates(block, blocks) - kDistanceHalo,
+                                  glm::ivec3(halo_edge(kDistanceHalo)), halo);
+      with_gradient<kDistanceHalo>(halo, distances.data() + static_cast<std::size_t>(tile) * kTileNodes * 4);
     });
   }
 
@@ -174,9 +184,9 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
       std::fill(present.begin(), present.end(), 0);
       const float ambient = medium.region(0).eta;
       parallel_ranges(block_count, [&](int begin, int end) {
-        std::vector<float> halo(kHaloEdge * kHaloEdge * kHaloEdge);
+        std::vector<float> halo(halo_nodes(kIndexHalo));
         for (int block = begin; block < end; ++block) {
-          medium.read_eta(r, 8 * block_coordinates(block, blocks) - 1, glm::ivec3(kHaloEdge), halo);
+          medium.read_eta(r, 8 * block_coordinates(block, blocks) - kIndexHalo, glm::ivec3(halo_edge(kIndexHalo)), halo);
           const bool flat = std::all_of(halo.begin(), halo.end(), [&](float eta) { return eta == ambient; });
           if (flat) present[block] = TURBID_TILE_OUTSIDE;
         }
@@ -189,10 +199,10 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
   std::vector<float> indices(static_cast<std::size_t>(index_tiles) * kTileNodes * 4);
   for (const auto& [r, set] : index_sets) {
     for_each_tile(maps, set, block_count, [&, reader = r](int block, int tile) {
-      std::vector<float> halo(kHaloEdge * kHaloEdge * kHaloEdge);
-      medium.read_eta(reader, 8 * block_coordinates(block, blocks) - 1, glm::ivec3(kHaloEdge), halo);
+      std::vector<float> halo(halo_nodes(kIndexHalo));
+      medium.read_eta(reader, 8 * block_coordinates(block, blocks) - kIndexHalo, glm::ivec3(halo_edge(kIndexHalo)), halo);
       for (float& eta : halo) eta = 0.5f * eta * eta;
-      with_gradient(halo, indices.data() + static_cast<std::size_t>(tile) * kTileNodes * 4);
+      with_gradient<kIndexHalo>(halo, indices.data() + static_cast<std::size_t>(tile) * kTileNodes * 4);
     });
   }
 

@@ -30,8 +30,9 @@ March::March(cl::Session& session, const DeviceMedium& medium, const MarchSettin
   const cl::DeviceInfo& device = session.device();
   const std::size_t channels = medium.features.channels;
   const std::size_t nodes = medium.source_tiles.size() * TURBID_TILE_NODES, width = channels == 3 ? 4 : 1;
-  if (device.cpu && device.compute_units * nodes * width * sizeof(std::int64_t) <= device.global_memory / kOwnSumsShare) {
-    volumes_ = device.compute_units;
+  workers_ = static_cast<std::size_t>(settings.workers > 0 ? settings.workers : device.compute_units);
+  if (device.cpu && workers_ * nodes * width * sizeof(std::int64_t) <= device.global_memory / kOwnSumsShare) {
+    volumes_ = static_cast<int>(workers_);
   }
   std::vector<cl::Define> defines = medium.defines();
   defines.push_back({"TURBID_INTERLEAVE", device.cpu ? kInterleave : 1});
@@ -113,9 +114,9 @@ void March::enqueue_piece() {
   params_.end_ray = static_cast<int>(std::min<std::size_t>(params_.first_ray + kRaysPerLaunch, ray_count_));
   session_.fill_zero(queue, claims_);
   const cl::DeviceInfo& device = session_.device();
-  // A CPU's work-items take rays until none is left, one work-item per core; a GPU's take one ray each.
+  // A CPU's work-items take rays until none is left, as a rule one per core; a GPU's take one ray each.
   const std::size_t rays = params_.end_ray - params_.first_ray;
-  const std::size_t items = volumes_ > 0 ? volumes_ : device.cpu ? device.compute_units : rays;
+  const std::size_t items = device.cpu ? workers_ : rays;
   kernel_.enqueue(queue, {items}, {device.cpu ? std::size_t{1} : std::size_t{64}}, medium_.regions_buffer,
                   medium_.tile_map_buffer, medium_.block_region_buffer, medium_.distance_tiles, medium_.index_tiles,
                   medium_.coefficient_tiles, params_, rays_, next_, next_count_, claims_,

@@ -60,6 +60,7 @@ class March {
   cl::Kernel<cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, int, int> sum_deposits_;
   cl::Buffer<RayState> rays_, next_;
   cl::Buffer<int> next_count_, claims_, ground_rays_;
+  std::size_t workers_ = 0;  ///< work-items of a launch on a CPU
   int volumes_ = 0;  ///< work-items that have sums of their own, each a volume of all nodes; 0: they share one
   cl::Buffer<std::int64_t> own_sums_;  ///< [volume][node][4, or 1 where the scene is grey]
   cl::Buffer<std::int64_t> deposit_, flux_, tallies_, ground_, transmitted_;

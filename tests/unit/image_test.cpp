@@ -12,6 +12,7 @@
 #include <set>
 
 #include "host/base/errors.h"
+#include "tests/unit/scratch_folder.h"
 
 namespace turbid {
 namespace {
@@ -45,20 +46,9 @@ ViewImage numbered_picture(int width, int height) {
   return image;
 }
 
-class ImageFiles : public testing::Test {
+class ImageFiles : public ScratchFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("turbid-image-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  long entries() const { return std::distance(fs::directory_iterator(folder_), fs::directory_iterator()); }
-
-  fs::path folder_;
+  long entries() const { return std::distance(fs::directory_iterator(folder()), fs::directory_iterator()); }
 };
 
 struct File {
@@ -137,7 +127,7 @@ TEST_F(ImageFiles, WritingMakesFoldersReplacesFilesAndLeavesNothingElse) {
   EXPECT_EQ(read(path("new/deep/a.exr")).spec.width, 4);
   write_exr(numbered_picture(8, 4), {}, path("new/deep/a.exr"));
   EXPECT_EQ(read(path("new/deep/a.exr")).spec.width, 8);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "new/deep"), fs::directory_iterator()), 1);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder() / "new/deep"), fs::directory_iterator()), 1);
 }
 
 template <typename Action>

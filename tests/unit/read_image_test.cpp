@@ -11,6 +11,7 @@
 #include "host/base/errors.h"
 #include "host/view/image.h"
 #include "host/view/rgb_image.h"
+#include "tests/unit/scratch_folder.h"
 #include "volumes/read_vdb_values.h"
 
 namespace turbid {
@@ -18,17 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class ReadFiles : public testing::Test {
+class ReadFiles : public ScratchFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("turbid-read-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
   /// A file with these channels, every value its own number / 16.
   void write(const std::string& name, OIIO::ImageSpec spec, const std::vector<std::string>& channels) const {
     spec.channelnames = channels;
@@ -39,8 +31,6 @@ class ReadFiles : public testing::Test {
     ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, values.data()));
     ASSERT_TRUE(output->close());
   }
-
-  fs::path folder_;
 };
 
 template <typename Action>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How fast a step of the global lattice is beside the device's triad, what the steady solve saves over plain steps, and how
-// many iterations it needs on hard media.
+// How fast a step of the global lattice is beside the device's triad, what the steady solve saves over plain steps, and
+// how many iterations it needs on hard media.
 #pragma once
 #include <vector>
 
@@ -9,8 +9,8 @@
 
 namespace turbid {
 
-/// Single steps and blocks on `voxels`^3 (a multiple of 8), plain steps against the solve on `solve_voxels`^3, iterations on the media of
-/// hard_media.h at 32^3 and `solve_voxels`^3; medians of `repeats`.
+/// Single steps and blocks on `voxels`^3 (a multiple of 8), plain steps against the solve on `solve_voxels`^3,
+/// iterations on the media of hard_media.h at 32^3, `solve_voxels`^3 and, of two, twice that; medians of `repeats`.
 std::vector<Goal> measure_lattice(cl::Session&, int voxels = 128, int solve_voxels = 64, int repeats = 7);
 
 }  // namespace turbid

@@ -22,6 +22,7 @@ Json energy_part(const EnergyBalance& e, double allowed) {
           {"escaped_faces", faces},
           {"in_flight", colours(e.in_flight)},
           {"roulette", colours(e.roulette)},
+          {"rounding", colours(e.rounding)},
           {"imbalance", e.imbalance()},
           {"allowed_imbalance", allowed},
           {"balanced", e.imbalance() <= allowed}};

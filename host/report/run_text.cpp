@@ -23,6 +23,7 @@ std::string energy_table(const EnergyBalance& e, double allowed) {
   for (std::size_t face = 0; face < 6; ++face) text += row(kTowards[face], e.escaped_faces[face]);
   text += row("in flight", e.in_flight);
   if (e.roulette != glm::dvec3(0)) text += row("taken by roulette", e.roulette);
+  if (e.rounding != glm::dvec3(0)) text += row("taken by half-precision storage", e.rounding);
   text += line("  imbalance %.2g (up to %.0e is allowed)\n", e.imbalance(), allowed);
   return text;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads [solver] with its sub-tables march, lattice, steady and photon, and [view]: names, defaults and ranges of settings.h.
+// Reads [solver] with its sub-tables march, lattice, steady and photon, and [view]: names, defaults and ranges of
+// settings.h.
 #include "host/scene/parts.h"
 
 namespace turbid::scene {
@@ -86,16 +87,22 @@ void read_settings(Reading& reading, const toml::table& root) {
   SolverSettings& s = reading.scene.solver;
   const toml::table* node = table_at(root, "solver");
   const TableReader solver(node ? *node : kNone, "[solver]", effective.section("[solver]"));
-  solver.allow({"name", "tolerance", "seed", "error_estimate", "march", "lattice", "steady", "photon"});
+  solver.allow({"name", "tolerance", "seed", "error_estimate", "storage", "march", "lattice", "steady", "photon"});
   s.solver = solver.word("name", {"steady", "lattice", "photon"}, s.solver);
   const float tolerance = solver.number("tolerance", Range::closed(1e-6, 0.1), s.steady.tolerance);
   s.seed = static_cast<std::uint64_t>(solver.integer("seed", Range::at_least(0), static_cast<std::int64_t>(s.seed)));
   s.error_estimate = solver.choice<EstimateEffort>(
       "error_estimate",
       {{"off", EstimateEffort::off}, {"quick", EstimateEffort::quick}, {"full", EstimateEffort::full}}, "quick");
+  const Storage storage = solver.choice<Storage>(
+      "storage", {{"float", Storage::single_precision}, {"half", Storage::half_precision}}, "float");
+  if (storage == Storage::half_precision && s.solver != "lattice") {
+    solver.fail("storage", "\"half\" is for the populations of solver \"lattice\", found name = \"" + s.solver + "\"");
+  }
   s.march = read_march({sub_table(solver, "march"), "[solver.march]", effective.section("[solver.march]")});
   s.lattice = read_lattice({sub_table(solver, "lattice"), "[solver.lattice]", effective.section("[solver.lattice]")},
                            tolerance);
+  s.lattice.storage = storage;
   s.steady =
       read_steady({sub_table(solver, "steady"), "[solver.steady]", effective.section("[solver.steady]")}, tolerance);
   s.photon = read_photon({sub_table(solver, "photon"), "[solver.photon]", effective.section("[solver.photon]")});

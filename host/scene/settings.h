@@ -18,6 +18,13 @@ struct MarchSettings {
 
 enum class CollisionVariant { paper, exponential, trapezoid, trt };
 
+/// How the lattice keeps its populations. Arithmetic is single precision either way.
+enum class Storage {
+  single_precision,  ///< "float"
+  half_precision,    ///< "half": half the memory. What rounding takes from a voxel waits there and is not lost, but the fluence
+                     ///< keeps an error (kHalfError, lattice_scheme.h), which grows where it is far below the brightest source
+};
+
 struct LatticeSettings {
   CollisionVariant collision = CollisionVariant::trt;
   int block_edge = 8;               ///< 4 or 8 voxels; 0: no blocks, one global lattice of single steps in place
@@ -25,6 +32,7 @@ struct LatticeSettings {
   int sweeps_per_batch = 4;         ///< exchanges (global: steps) while the next batch of rays marches; >= 0
   int max_sweeps = 20000;           ///< exchanges (global: steps) at the most; >= 1
   float tolerance = 1e-4f;          ///< estimated relative error of the fluence, in [1e-6, 0.1]
+  Storage storage = Storage::single_precision;  ///< scene key [solver] storage = "float" or "half"
 };
 
 struct SteadySettings {

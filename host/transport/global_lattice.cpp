@@ -13,7 +13,7 @@ namespace turbid {
 namespace {
 
 constexpr int kVoxels = 512;
-constexpr int kSums = 10;           // per row, global_lattice.cl
+constexpr int kSums = 11;           // per row, global_lattice.cl
 constexpr cl::Range kLocal{16, 1};  // the number of rows is a multiple of 64
 
 }  // namespace
@@ -26,7 +26,8 @@ GlobalLattice::GlobalLattice(cl::Session& session, const DiffusionMedium& diffus
       row_count_(static_cast<int>(rows_.rows.size())),
       block_count_(diffusion.blocks.count()),
       face_count_(static_cast<int>(rows_.faces.size())) {
-  program_ = session.build("global_lattice.cl", {{"TURBID_COLLISION", static_cast<long>(settings.collision)}});
+  program_ = session.build("global_lattice.cl",
+                           {{"TURBID_COLLISION", static_cast<long>(settings.collision)}, {"TURBID_HALF", half()}});
   steps_[0] = {program_, "step_local"};
   steps_[1] = {program_, "step_crossing"};
   measured_[0] = {program_, "measure_local"};
@@ -64,24 +65,26 @@ GlobalLattice::GlobalLattice(cl::Session& session, const DiffusionMedium& diffus
   walls_ = session.upload(rows_.walls);
   faces_ = session.upload(faces);
   links_ = session.upload(rows_.links);
-  slots_ = session.zeros<float>(6 * places * channels_);
+  slots_ = session.zeros<std::byte>(6 * places * channels_ * stored_bytes());
+  rest_ = session.zeros<std::byte>(half() ? places * channels_ * stored_bytes() : 0);
   source_ = session.zeros<float>(places * channels_);
   lit_ = session.zeros<std::int32_t>(blocks * channels_);
   fluence_ = session.zeros<float>(places * channels_);
   sums_ = session.zeros<float>(kSums * static_cast<std::size_t>(row_count_) * channels_);
-  lost_ = session.zeros<float>(static_cast<std::size_t>(face_count_) * channels_);
+  lost_ = session.zeros<float>(2 * static_cast<std::size_t>(face_count_) * channels_);
 }
 
 std::size_t GlobalLattice::device_bytes() const {
   std::size_t bytes = rows_buffer_.bytes() + ends_.bytes() + end_walls_.bytes() + near_.bytes() + faces_.bytes() +
-                      links_.bytes() + even_.bytes() + lit_.bytes();
-  for (const F* buffer : {&slots_, &collision_, &source_, &walls_, &fluence_, &sums_, &lost_}) bytes += buffer->bytes();
+                      links_.bytes() + slots_.bytes() + rest_.bytes() + even_.bytes() + lit_.bytes();
+  for (const F* buffer : {&collision_, &source_, &walls_, &fluence_, &sums_, &lost_}) bytes += buffer->bytes();
   return bytes;
 }
 
 void GlobalLattice::reset() {
   cl::Queue& queue = session_.lattice_queue();
-  for (F* buffer : {&slots_, &source_, &fluence_}) session_.fill_zero(queue, *buffer);
+  for (F* buffer : {&source_, &fluence_}) session_.fill_zero(queue, *buffer);
+  for (Bytes* buffer : {&slots_, &rest_}) session_.fill_zero(queue, *buffer);
   session_.fill_zero(queue, lit_);
   emitted_ = glm::dvec3(0);
   sweeps_ = first_sweep_ = 0;
@@ -91,13 +94,14 @@ void GlobalLattice::set_source(const std::vector<float>& q) {
   const std::size_t places = rows_.place_count, stride = diffusion_.stride(), blocks = block_count_;
   std::vector<float> scaled(places * channels_, 0.0f);
   std::vector<std::int32_t> lit(blocks * channels_, 0);
+  if (choose_scale(q)) reset();
   emitted_ = glm::dvec3(0);
   for (int c = 0; c < channels_; ++c) {
     for (std::size_t i = 0; i < stride; ++i) {
       const std::size_t at = c * stride + i;
       if (diffusion_.region[i] < 0 || q[at] == 0.0f) continue;
       const Collision k = collision_coefficients(settings_.collision, diffusion_.s[at], diffusion_.s_a[at]);
-      scaled[c * places + rows_.places[i]] = static_cast<float>(q[at] * k.source);
+      scaled[c * places + rows_.places[i]] = static_cast<float>(scale_[c] * q[at] * k.source);
       lit[c * blocks + rows_.order[i / kVoxels]] = 1;
       emitted_[c] += q[at];
     }
@@ -112,13 +116,13 @@ void GlobalLattice::enqueue_step(bool measure) {
   const int crossing = sweeps_ & 1;
   const cl::Range global{static_cast<std::size_t>(row_count_), channels};
   if (measure) {
-    measured_[crossing].enqueue(queue, global, kLocal, slots_, collision_, even_, source_, lit_, rows_buffer_, ends_,
-                                end_walls_, near_, walls_, row_count_, block_count_, rows_.wall_count,
+    measured_[crossing].enqueue(queue, global, kLocal, slots_, rest_, collision_, even_, source_, lit_, rows_buffer_,
+                                ends_, end_walls_, near_, walls_, row_count_, block_count_, rows_.wall_count,
                                 rows_.place_count, channels_, fluence_, sums_);
   } else {
-    steps_[crossing].enqueue(queue, global, kLocal, slots_, collision_, even_, source_, lit_, rows_buffer_, ends_,
-                             end_walls_, near_, walls_, row_count_, block_count_, rows_.wall_count, rows_.place_count,
-                             channels_);
+    steps_[crossing].enqueue(queue, global, kLocal, slots_, rest_, collision_, even_, source_, lit_, rows_buffer_,
+                             ends_, end_walls_, near_, walls_, row_count_, block_count_, rows_.wall_count,
+                             rows_.place_count, channels_);
   }
   exchange_.enqueue(queue, {static_cast<std::size_t>(face_count_), channels}, {64, 1}, slots_, faces_, links_, lost_,
                     face_count_, rows_.place_count, channels_, crossing, measure);
@@ -142,7 +146,8 @@ LatticeScheme::Change GlobalLattice::read_change() {
       total += at[1];
     }
     // A lattice that has overflowed must not look like one that has come to rest.
-    if (!std::isfinite(change) || !std::isfinite(total)) return {std::numeric_limits<double>::quiet_NaN()};
+    if (!std::isfinite(change) || !std::isfinite(total)) return {.relative = std::numeric_limits<double>::quiet_NaN()};
+    result.total[c] = total;
     if (total > 0) result.relative = std::max(result.relative, change / total);
   }
   return result;
@@ -155,7 +160,7 @@ std::vector<float> GlobalLattice::read_fluence() {
   for (int c = 0; c < channels_; ++c) {
     const float* from = values.data() + static_cast<std::size_t>(c) * rows_.place_count;
     for (std::size_t i = 0; i < stride; ++i) {
-      if (diffusion_.region[i] >= 0) result[c * stride + i] = from[rows_.places[i]];
+      if (diffusion_.region[i] >= 0) result[c * stride + i] = static_cast<float>(from[rows_.places[i]] / scale_[c]);
     }
   }
   return result;
@@ -169,16 +174,20 @@ LatticeEnergy GlobalLattice::read_energy() {
   enqueue_step(true);
   const std::vector<float> second = session_.read(queue, sums_);
   for (int c = 0; c < channels_; ++c) {
-    result.absorbed[c] = emitted_[c];
+    double absorbed = 0;
     for (int row = 0; row < row_count_; ++row) {
       const std::size_t at = kSums * (static_cast<std::size_t>(c) * row_count_ + row);
-      result.absorbed[c] += first[at + 2];
-      for (int side = 0; side < 6; ++side) result.escaped[side][c] += first[at + 4 + side];
-      result.stored[c] += static_cast<double>(second[at + 3]) - first[at + 3];
+      absorbed += first[at + 2];
+      for (int side = 0; side < 6; ++side) result.escaped[side][c] += first[at + 4 + side] / scale_[c];
+      result.stored[c] += (static_cast<double>(second[at + 3]) - first[at + 3]) / scale_[c];
+      result.rounding[c] += first[at + 10] / scale_[c];
     }
+    result.absorbed[c] = emitted_[c] + absorbed / scale_[c];
     for (int face = 0; face < face_count_; ++face) {
       const int towards = rows_.faces[face].open_towards;
-      if (towards >= 0) result.escaped[towards][c] += lost[static_cast<std::size_t>(c) * face_count_ + face];
+      if (towards >= 0)
+        result.escaped[towards][c] += lost[static_cast<std::size_t>(c) * face_count_ + face] / scale_[c];
+      result.rounding[c] += lost[static_cast<std::size_t>(channels_ + c) * face_count_ + face] / scale_[c];
     }
   }
   return result;

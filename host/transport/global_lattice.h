@@ -33,8 +33,9 @@ class GlobalLattice : public LatticeScheme {
   using F2 = cl::Buffer<std::array<float, 2>>;
   using I2 = cl::Buffer<std::array<std::int32_t, 2>>;
   using I4 = cl::Buffer<std::array<std::int32_t, 4>>;
-  using Step = cl::Kernel<F, F, F2, F, I, I4, I4, F2, I2, F, int, int, int, int, int>;
-  using MeasuredStep = cl::Kernel<F, F, F2, F, I, I4, I4, F2, I2, F, int, int, int, int, int, F, F>;
+  using Bytes = cl::Buffer<std::byte>;
+  using Step = cl::Kernel<Bytes, Bytes, F, F2, F, I, I4, I4, F2, I2, F, int, int, int, int, int>;
+  using MeasuredStep = cl::Kernel<Bytes, Bytes, F, F2, F, I, I4, I4, F2, I2, F, int, int, int, int, int, F, F>;
   void enqueue_step(bool measure);
 
   cl::Session& session_;
@@ -44,8 +45,9 @@ class GlobalLattice : public LatticeScheme {
   cl::Program program_;
   Step steps_[2];  ///< local, crossing
   MeasuredStep measured_[2];
-  cl::Kernel<F, I4, cl::Buffer<std::array<float, 4>>, F, int, int, int, int, int> exchange_;
-  F slots_, collision_, source_, walls_, fluence_, sums_, lost_;
+  cl::Kernel<Bytes, I4, cl::Buffer<std::array<float, 4>>, F, int, int, int, int, int> exchange_;
+  Bytes slots_, rest_;
+  F collision_, source_, walls_, fluence_, sums_, lost_;
   F2 even_, end_walls_;
   I lit_;
   I4 rows_buffer_, ends_, faces_;

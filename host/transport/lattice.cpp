@@ -11,7 +11,7 @@ namespace turbid {
 namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
-constexpr int kSums = 4, kDepartures = 7;  // per block, lattice.cl
+constexpr int kSums = 5, kDepartures = 7;  // per block, lattice.cl
 constexpr cl::Range kLocal{1, 1};
 
 }  // namespace
@@ -23,7 +23,8 @@ Lattice::Lattice(cl::Session& session, const DiffusionMedium& diffusion, const L
       channels_(diffusion.channels),
       blocks_(medium_.blocks.count()) {
   program_ = session.build("lattice.cl", {{"TURBID_EDGE", settings.block_edge},
-                                          {"TURBID_COLLISION", static_cast<long>(settings.collision)}});
+                                          {"TURBID_COLLISION", static_cast<long>(settings.collision)},
+                                          {"TURBID_HALF", half()}});
   sweep_ = {program_, "sweep"};
   departures_ = {program_, "departures"};
   collision_ = session.upload(medium_.collision);
@@ -40,7 +41,8 @@ Lattice::Lattice(cl::Session& session, const DiffusionMedium& diffusion, const L
   source_ = session.zeros<float>(size);
   lit_ = session.zeros<std::int32_t>(per_channel);
   fluence_ = session.zeros<float>(size);
-  populations_ = session.zeros<float>(6 * size);
+  populations_ = session.zeros<std::byte>(6 * size * stored_bytes());
+  rest_ = session.zeros<std::byte>(half() ? size * stored_bytes() : 0);
   for (F& buffer : interfaces_)
     buffer = session.zeros<float>(static_cast<std::size_t>(blocks_ + 1) * 6 * face * channels_);
   sums_ = session.zeros<float>(per_channel * kSums);
@@ -48,9 +50,9 @@ Lattice::Lattice(cl::Session& session, const DiffusionMedium& diffusion, const L
 }
 
 std::size_t Lattice::device_bytes() const {
-  std::size_t bytes = even_.bytes() + shares_.bytes();
-  for (const F* buffer : {&collision_, &source_, &walls_, &populations_, &fluence_, &sums_, &departing_,
-                          &interfaces_[0], &interfaces_[1]}) {
+  std::size_t bytes = even_.bytes() + shares_.bytes() + populations_.bytes() + rest_.bytes();
+  for (const F* buffer :
+       {&collision_, &source_, &walls_, &fluence_, &sums_, &departing_, &interfaces_[0], &interfaces_[1]}) {
     bytes += buffer->bytes();
   }
   for (const I* buffer : {&lit_, &wall_block_, &first_face_, &faces_, &open_towards_, &neighbours_})
@@ -60,8 +62,8 @@ std::size_t Lattice::device_bytes() const {
 
 void Lattice::reset() {
   cl::Queue& queue = session_.lattice_queue();
-  for (F* buffer : {&source_, &fluence_, &populations_, &interfaces_[0], &interfaces_[1]})
-    session_.fill_zero(queue, *buffer);
+  for (F* buffer : {&source_, &fluence_, &interfaces_[0], &interfaces_[1]}) session_.fill_zero(queue, *buffer);
+  for (Bytes* buffer : {&populations_, &rest_}) session_.fill_zero(queue, *buffer);
   session_.fill_zero(queue, lit_);
   emitted_ = glm::dvec3(0);
   crossing_next_ = 1;
@@ -72,6 +74,7 @@ void Lattice::set_source(const std::vector<float>& q) {
   const std::size_t per_block = medium_.voxels();
   std::vector<float> scaled(medium_.stride() * channels_, 0.0f);
   std::vector<std::int32_t> lit(static_cast<std::size_t>(blocks_) * channels_, 0);
+  if (choose_scale(q)) reset();
   emitted_ = glm::dvec3(0);
   for (int c = 0; c < channels_; ++c) {
     for (std::size_t i = 0; i < medium_.stride(); ++i) {
@@ -79,7 +82,7 @@ void Lattice::set_source(const std::vector<float>& q) {
       const std::size_t at = c * medium_.stride() + i;
       const float power = q[c * diffusion_.stride() + medium_.origin[i]];
       if (power == 0.0f) continue;
-      scaled[at] = power * medium_.source_factor[at];
+      scaled[at] = static_cast<float>(scale_[c] * power) * medium_.source_factor[at];
       lit[at / per_block] = 1;
       emitted_[c] += power;
     }
@@ -93,7 +96,7 @@ void Lattice::enqueue_sweeps(int count, int inner) {
   const cl::Range global{static_cast<std::size_t>(blocks_), static_cast<std::size_t>(channels_)};
   for (int i = 0; i < count; ++i, ++sweeps_) {
     sweep_.enqueue(queue, global, kLocal, collision_, even_, source_, lit_, wall_block_, walls_, first_face_, faces_,
-                   shares_, neighbours_, interfaces_[sweeps_ & 1], interfaces_[(sweeps_ + 1) & 1], populations_,
+                   shares_, neighbours_, interfaces_[sweeps_ & 1], interfaces_[(sweeps_ + 1) & 1], populations_, rest_,
                    fluence_, sums_, blocks_, medium_.wall_blocks, channels_, inner, 1 - crossing_next_);
     crossing_next_ ^= inner & 1;
   }
@@ -111,7 +114,8 @@ Lattice::Change Lattice::read_change() {
       total += at[1];
     }
     // A lattice that has overflowed must not look like one that has come to rest.
-    if (!std::isfinite(change) || !std::isfinite(total)) return {std::numeric_limits<double>::quiet_NaN()};
+    if (!std::isfinite(change) || !std::isfinite(total)) return {.relative = std::numeric_limits<double>::quiet_NaN()};
+    result.total[c] = total;
     if (total > 0) result.relative = std::max(result.relative, change / total);
   }
   return result;
@@ -123,7 +127,8 @@ std::vector<float> Lattice::read_fluence() {
   for (int c = 0; c < channels_; ++c) {
     for (std::size_t i = 0; i < medium_.stride(); ++i) {
       if (medium_.origin[i] != kNone)
-        result[c * diffusion_.stride() + medium_.origin[i]] = values[c * medium_.stride() + i];
+        result[c * diffusion_.stride() + medium_.origin[i]] =
+            static_cast<float>(values[c * medium_.stride() + i] / scale_[c]);
     }
   }
   return result;
@@ -138,19 +143,23 @@ LatticeEnergy Lattice::read_energy() {
   cl::Queue& queue = session_.lattice_queue();
   if (!crossing_next_) enqueue_sweeps(1, 1);
   departures_.enqueue(queue, {static_cast<std::size_t>(blocks_), static_cast<std::size_t>(channels_)}, kLocal,
-                      wall_block_, walls_, first_face_, faces_, open_towards_, shares_, populations_, departing_,
-                      blocks_, medium_.wall_blocks, channels_);
+                      wall_block_, walls_, first_face_, faces_, open_towards_, shares_, interfaces_[sweeps_ & 1],
+                      populations_, rest_, departing_, blocks_, medium_.wall_blocks, channels_);
   enqueue_sweeps(1, 1);
   const std::vector<float> departing = session_.read(queue, departing_), sums = session_.read(queue, sums_);
   LatticeEnergy result;
   for (int c = 0; c < channels_; ++c) {
-    result.absorbed[c] = emitted_[c];
+    double absorbed = 0;
     for (int block = 0; block < blocks_; ++block) {
       const std::size_t at = static_cast<std::size_t>(c) * blocks_ + block;
-      result.absorbed[c] += sums[kSums * at + 2];
-      result.stored[c] += static_cast<double>(sums[kSums * at + 3]) - departing[kDepartures * at];
-      for (int face = 0; face < 6; ++face) result.escaped[face][c] += departing[kDepartures * at + 1 + face];
+      const float *last = sums.data() + kSums * at, *before = departing.data() + kDepartures * at;
+      absorbed += last[2];
+      // Storing comes after the sum of what departs, and does not touch what was sent.
+      result.stored[c] += (static_cast<double>(last[3]) - last[4] - before[0]) / scale_[c];
+      result.rounding[c] += last[4] / scale_[c];
+      for (int face = 0; face < 6; ++face) result.escaped[face][c] += before[1 + face] / scale_[c];
     }
+    result.absorbed[c] = emitted_[c] + absorbed / scale_[c];
   }
   return result;
 }

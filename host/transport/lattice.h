@@ -34,6 +34,7 @@ class Lattice : public LatticeScheme {
   using F2 = cl::Buffer<std::array<float, 2>>;
   using F4 = cl::Buffer<std::array<float, 4>>;
   using I = cl::Buffer<std::int32_t>;
+  using Bytes = cl::Buffer<std::byte>;
 
   cl::Session& session_;
   LatticeMedium medium_;
@@ -41,9 +42,10 @@ class Lattice : public LatticeScheme {
   int crossing_next_ = 1;  ///< whether populations stand as after a local step
   glm::dvec3 emitted_{0};  ///< sum of the source [W]
   cl::Program program_;
-  cl::Kernel<F, F2, F, I, I, F, I, I, F4, I, F, F, F, F, F, int, int, int, int, int> sweep_;
-  cl::Kernel<I, F, I, I, I, F4, F, F, int, int, int> departures_;
-  F collision_, source_, walls_, populations_, fluence_, sums_, departing_;
+  cl::Kernel<F, F2, F, I, I, F, I, I, F4, I, F, F, Bytes, Bytes, F, F, int, int, int, int, int> sweep_;
+  cl::Kernel<I, F, I, I, I, F4, F, Bytes, Bytes, F, int, int, int> departures_;
+  Bytes populations_, rest_;
+  F collision_, source_, walls_, fluence_, sums_, departing_;
   F interfaces_[2];
   F2 even_;
   F4 shares_;

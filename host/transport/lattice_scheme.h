@@ -17,7 +17,8 @@ namespace turbid {
 /// Energy of one lattice step [W per channel].
 struct LatticeEnergy {
   glm::dvec3 absorbed{0};
-  glm::dvec3 stored{0};  ///< what the step added to the populations: 0 in the steady state
+  glm::dvec3 stored{0};    ///< what the step added to the populations: 0 in the steady state
+  glm::dvec3 rounding{0};  ///< what storing the populations in half precision took away
   std::array<glm::dvec3, 6> escaped{};
 };
 
@@ -39,6 +40,7 @@ class LatticeScheme {
 
   struct Change {
     double relative = 0;  ///< summed |change| of the last sweep / summed fluence, worst channel
+    glm::dvec3 total{0};  ///< summed fluence, in the units of the populations
   };
   /// Waits for the sweeps and reads the last one's change.
   virtual Change read_change() = 0;
@@ -56,13 +58,30 @@ class LatticeScheme {
   LatticeScheme(const DiffusionMedium& diffusion, const LatticeSettings& settings)
       : diffusion_(diffusion), settings_(settings) {}
   virtual int sweeps_per_test() const = 0;
+  bool half() const { return settings_.storage == Storage::half_precision; }
+  /// Bytes of one stored population.
+  std::size_t stored_bytes() const { return half() ? 2 : 4; }
+  /// Chooses scale_ for source q [channel][block and voxel of the diffusion medium] where populations are stored in
+  /// half precision, so that the largest fluence that q can lead to fits. Keeps the scale in use, once there are
+  /// populations, while it lies within a factor of 8; returns whether it changed.
+  bool choose_scale(const std::vector<float>& q);
   /// After the last sweep of relax: whatever read_energy needs.
   virtual void settle() {}
 
   const DiffusionMedium& diffusion_;
   LatticeSettings settings_;
+  /// Change per sweep since the last test. In half precision populations keep jumping by roundings when all is at rest,
+  /// but what they add up to does not: there the change of the summed fluence counts.
+  double change_per_sweep(glm::dvec3& last_total);
+
   int sweeps_ = 0, first_sweep_ = 0;
+  glm::dvec3 scale_{1};  ///< power of two per channel by which source, populations and fluence are kept larger
 };
+
+/// Relative error (rel-L2) that half-precision storage leaves in the fluence, for the run's own error estimate.
+/// Rounding errs by up to 2^-11 = 4.9e-4 of a population, each of six by itself, and the next step evens it out; tests
+/// hold even and uneven media to it.
+inline constexpr double kHalfError = 5e-4;
 
 /// Blocks that exchange interfaces, or one global lattice where block_edge is 0.
 std::unique_ptr<LatticeScheme> make_lattice(cl::Session&, const DiffusionMedium&, const LatticeSettings&);

@@ -38,12 +38,14 @@ DiffuseLight LatticeSolver::diffuse(const LightSource& source) {
   lattice_->set_source(source.power);
   DiffuseLight light;
   light.error_estimate = lattice_->relax([&](double fraction) { context_.progress.update(fraction); });
+  if (context_.settings.lattice.storage == Storage::half_precision) light.error_estimate += kHalfError;
   light.iterations = lattice_->sweeps();
   light.fluence = lattice_->read_fluence();
   const LatticeEnergy energy = lattice_->read_energy();
   light.absorbed = energy.absorbed;
   light.escaped = energy.escaped;
   light.stored = energy.stored;
+  light.rounding = energy.rounding;
   // The lattice tells what crosses each boundary face; of it, what went into opaque bodies.
   const DiffusionMedium& medium = diffusion_medium();
   for (const BoundaryFace& face : medium.boundary) {

@@ -11,7 +11,7 @@ namespace turbid {
 
 double EnergyBalance::imbalance() const {
   double worst = 0;
-  const glm::dvec3 rest = missed + reflected + absorbed + absorbed_opaque + escaped + in_flight + roulette;
+  const glm::dvec3 rest = missed + reflected + absorbed + absorbed_opaque + escaped + in_flight + roulette + rounding;
   for (int c = 0; c < 3; ++c) {
     if (emitted[c] > 0) worst = std::max(worst, std::abs(emitted[c] - rest[c]) / emitted[c]);
   }
@@ -118,6 +118,7 @@ LightSolution MarchingSolver::light(const LightList& lights) {
   energy.absorbed = tallies.absorbed + diffuse_light.absorbed;
   energy.absorbed_opaque = rays.absorbed_opaque + tallies.opaque + diffuse_light.absorbed_opaque + source.left.absorbed_opaque;
   energy.in_flight = tallies.in_flight + source.unresolved + diffuse_light.stored;
+  energy.rounding = diffuse_light.rounding;
   for (int face = 0; face < 6; ++face) {
     energy.escaped_faces[face] = tallies.escaped[face] + diffuse_light.escaped[face] + source.left.escaped[face];
     energy.escaped += energy.escaped_faces[face];
@@ -141,7 +142,7 @@ LightSolution MarchingSolver::light(const LightList& lights) {
   if (channels == 1) {
     auto spread = [&](glm::dvec3& value) { value = value.x * glm::dvec3(tint); };
     for (glm::dvec3* value : {&energy.emitted, &energy.missed, &energy.reflected, &energy.absorbed, &energy.absorbed_opaque,
-                              &energy.in_flight, &energy.escaped}) {
+                              &energy.in_flight, &energy.escaped, &energy.rounding}) {
       spread(*value);
     }
     for (glm::dvec3& value : energy.escaped_faces) spread(value);

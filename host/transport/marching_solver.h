@@ -20,6 +20,7 @@ struct DiffuseLight {
   glm::dvec3 absorbed_opaque{0};    ///< diffused into opaque bodies
   std::array<glm::dvec3, 6> escaped{};
   glm::dvec3 stored{0};             ///< still on its way (lattice only)
+  glm::dvec3 rounding{0};           ///< taken by half-precision storage (lattice only)
   int iterations = 0;
   double error_estimate = 0;
 };

@@ -19,7 +19,7 @@
 namespace turbid {
 
 /// Where the light's power went, per colour [W]. emitted = missed + reflected + absorbed + absorbed_opaque + escaped +
-/// in_flight + roulette.
+/// in_flight + roulette + rounding.
 struct EnergyBalance {
   glm::dvec3 emitted{0};         ///< by the lights (what is aimed at the medium) and by emitting media
   glm::dvec3 missed{0};          ///< never met a medium
@@ -30,6 +30,7 @@ struct EnergyBalance {
   std::array<glm::dvec3, 6> escaped_faces{};  ///< of it, towards -x, +x, -y, +y, -z, +z
   glm::dvec3 in_flight{0};       ///< paths cut by max_steps, max_bounces or min_power; deposits without a voxel
   glm::dvec3 roulette{0};        ///< photon solver: taken by Russian roulette less what it gave, zero on average
+  glm::dvec3 rounding{0};        ///< lattice with storage "half": taken by rounding what is stored, less what it gave
   double imbalance() const;      ///< largest |emitted - sum of the rest| / emitted over the colours
 };
 

@@ -105,6 +105,27 @@ TEST_F(Commands, every_watt_is_accounted_for_per_colour) {
   }
 }
 
+TEST_F(Commands, half_precision_storage_tells_what_it_took_and_how_far_it_errs) {
+  for (const char* edge : {"8", "0"}) {
+    const auto solved = [&](const char* storage) {
+      return json_of(place.turbid({"solve", "ball.toml", "-q", "--json", "--solver", "lattice", "-D",
+                                   std::string("solver.storage=") + storage, "-D",
+                                   std::string("solver.lattice.block_edge=") + edge}));
+    };
+    const Json full = solved("float"), half = solved("half");
+    EXPECT_TRUE(half["energy"]["balanced"]);
+    EXPECT_LT(half["energy"]["imbalance"], 1e-5) << "the project's own bound";
+    EXPECT_LT(half["solver"]["diffusion_bytes"], 0.9 * full["solver"]["diffusion_bytes"].get<double>());
+    EXPECT_GT(half["solver"]["error_estimate"].get<double>(), 4.9e-4) << "one rounding of half precision";
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_EQ(full["energy"]["rounding"][c], 0);
+      EXPECT_NE(half["energy"]["rounding"][c], 0);
+      EXPECT_NEAR(half["energy"]["rounding"][c].get<double>(), 0, 1e-4);
+      EXPECT_NEAR(half["energy"]["escaped"][c].get<double>(), full["energy"]["escaped"][c].get<double>(), 5e-4);
+    }
+  }
+}
+
 TEST_F(Commands, solve_writes_fluence_and_medium_as_openvdb) {
   EXPECT_EQ(place.turbid({"solve", "ball.toml", "-o", "f.vdb", "-q"}).status, 0);
   const Outcome info = place.turbid({"info", "f.vdb"});

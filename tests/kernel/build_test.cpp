@@ -31,13 +31,13 @@ TEST(KernelFiles, RayProgramsBuildForEveryKindOfScene) {
   }
 }
 
-TEST(KernelFiles, LatticesOfEitherEdgeAndTheGlobalOneBuildForEveryCollision) {
-  for (long edge : {4, 8}) {
-    for (long collision = 0; collision < 4; ++collision)
-      EXPECT_NO_THROW(test::session().build("lattice.cl", {{"TURBID_EDGE", edge}, {"TURBID_COLLISION", collision}}));
+TEST(KernelFiles, LatticesOfEitherEdgeAndTheGlobalOneBuildForEveryCollisionAndStorage) {
+  for (long choice = 0; choice < 8; ++choice) {
+    const cl::Define collision{"TURBID_COLLISION", choice % 4}, half{"TURBID_HALF", choice / 4};
+    for (long edge : {4, 8})
+      EXPECT_NO_THROW(test::session().build("lattice.cl", {{"TURBID_EDGE", edge}, collision, half})) << choice;
+    EXPECT_NO_THROW(test::session().build("global_lattice.cl", {collision, half})) << choice;
   }
-  for (long collision = 0; collision < 4; ++collision)
-    EXPECT_NO_THROW(test::session().build("global_lattice.cl", {{"TURBID_COLLISION", collision}}));
 }
 
 TEST(KernelFiles, TheSteadySolveBuilds) {
@@ -46,7 +46,7 @@ TEST(KernelFiles, TheSteadySolveBuilds) {
 
 TEST(KernelFiles, AMissingIntegerIsAnErrorThatNamesIt) {
   try {
-    test::session().build("lattice.cl", {{"TURBID_EDGE", 8}});
+    test::session().build("lattice.cl", {{"TURBID_EDGE", 8}, {"TURBID_HALF", 0}});
     FAIL() << "built";
   } catch (const DeviceError& error) {
     EXPECT_NE(std::string(error.what()).find("TURBID_COLLISION"), std::string::npos) << error.what();

@@ -2,14 +2,14 @@
 // The blockwise lattice against one global lattice in double precision; what a step does with energy; the printed
 // matrix.
 #include "host/transport/lattice.h"
-#include "host/transport/lattice_medium.h"
-#include "host/transport/lattice_scheme.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
+#include "host/transport/lattice_medium.h"
+#include "host/transport/lattice_scheme.h"
 #include "tests/support/test_diffusion.h"
 #include "volumes/solid.h"
 
@@ -181,6 +181,46 @@ TEST(Lattice, BlocksAndInnerStepsDoNotChangeTheSteadyState) {
       }
       EXPECT_LT(difference / total, 4e-5)
           << "b = " << edge << ", m = " << inner;  // two runs of estimated error 1e-5, safety 2
+    }
+  }
+}
+
+/// Relative L2 difference.
+double apart(const std::vector<float>& a, const std::vector<float>& b) {
+  double difference = 0, norm = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference += std::pow(static_cast<double>(a[i]) - b[i], 2);
+    norm += std::pow(static_cast<double>(b[i]), 2);
+  }
+  return std::sqrt(difference / norm);
+}
+
+TEST(Lattice, HalfPrecisionStorageStaysWithinItsErrorAndBalancesItsRounding) {
+  for (const double albedo : {0.99, 0.9999}) {
+    for (const bool even : {true, false}) {
+      DiffusionMedium medium = test::random_medium(mixed_scene(), 0.3, even ? 0.3 : 3, 5);
+      for (std::size_t i = 0; i < medium.s.size(); ++i) medium.s_a[i] = static_cast<float>((1 - albedo) * medium.s[i]);
+      std::vector<float> q = random_source(medium, 6);
+      for (float& value : q) value *= 1e-7f;  // watts of any size: half precision ends at 6e-8
+      double total = 0;
+      for (float value : q) total += value;
+      for (int edge : {4, 8, 0}) {
+        LatticeSettings s = settings(CollisionVariant::trt, edge, 8);
+        const auto full = make_lattice(test::session(), medium, s);
+        s.storage = Storage::half_precision;
+        const auto half = make_lattice(test::session(), medium, s);
+        EXPECT_LT(half->device_bytes(), 0.9 * full->device_bytes());
+        for (LatticeScheme* lattice : {full.get(), half.get()}) {
+          lattice->set_source(q);
+          lattice->relax();
+        }
+        EXPECT_LT(apart(half->read_fluence(), full->read_fluence()), kHalfError) << albedo << " " << edge;
+        EXPECT_LE(half->sweeps(), 2 * full->sweeps()) << albedo << " " << edge;
+        const LatticeEnergy energy = half->read_energy();
+        double sum = energy.absorbed.x + energy.stored.x + energy.rounding.x;
+        for (const glm::dvec3& face : energy.escaped) sum += face.x;
+        EXPECT_NEAR(sum / total, 1, 1e-5) << albedo << " " << edge;
+      }
     }
   }
 }

@@ -139,10 +139,12 @@ std::uint64_t fingerprint() {
   };
   for (const EnergyMedium& c : energy_media()) {
     if (c.name != std::string("nested") && c.name != std::string("heterogeneous")) continue;
-    for (const char* solver : {"steady", "lattice", "global lattice"}) {
+    for (const char* solver : {"steady", "lattice", "global lattice", "half lattice", "half global lattice"}) {
       SolverSettings settings;
       settings.solver = solver == std::string("steady") ? "steady" : "lattice";
-      if (solver == std::string("global lattice")) settings.lattice.block_edge = 0;
+      const std::string name = solver;
+      if (name.ends_with("global lattice")) settings.lattice.block_edge = 0;
+      if (name.starts_with("half")) settings.lattice.storage = Storage::half_precision;
       settings.lattice.tolerance = 1e-3f;
       const test::Run run = test::run(c.scene, c.lights, settings);
       add(run.solution.volume.fluence.data(), 4 * run.solution.volume.fluence.size());

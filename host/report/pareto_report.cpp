@@ -19,8 +19,7 @@ Table run_table(const ParetoStudy& study) {
   table.caption = line(
       "L2 of the fluence against two photon runs, whose own scatter (%.2g) is taken out; an error far "
       "below it is not resolved. Coarser runs are interpolated to its voxels. Worth using: no other run is as fast and "
-      "as "
-      "accurate, to 1 %%.",
+      "as accurate, to 1 %%.",
       study.noise);
   table.columns = {{"L2"}, {"time", "s"}, {"worth using"}, {"solver"}, {"setting"}, {"picture"}, {"peak memory", "MB"}};
   for (const SettingRun& run : study.runs)

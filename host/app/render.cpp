@@ -47,6 +47,7 @@ std::string choose(RenderOptions& options, const cl::DeviceChoice& choice, Progr
   if (!overrides.resolution) overrides.resolution = kProbeVoxels;
   Scene scene = read_scene(options.scene, overrides);
   if (!scene.has_camera || scene.solver.solver == "photon") return "";
+  if (!(*options.error > 0)) throw InputError("--error 0: expected an error in (0, 1] to choose settings for");
   scene.solver.error_estimate = EstimateEffort::full;  // what is chosen by it costs more than it
   Progress quiet(Verbosity::quiet);
   cl::Session session(choice);
@@ -82,7 +83,7 @@ void render(RenderOptions options) {
   const cl::DeviceChoice choice = cl::choose_device(options.device);
   const RenderOutput output = render_output(options.output, options.scene);
   Progress progress(options.verbosity());
-  const std::string chosen = options.error && *options.error > 0 ? choose(options, choice, progress) : "";
+  const std::string chosen = options.error ? choose(options, choice, progress) : "";
   const VoxelisedScene in = read_and_voxelise(options, progress);
   if (!in.scene.has_camera)
     throw InputError(options.scene + ": has no [camera], so there is nothing to render; turbid solve needs none");

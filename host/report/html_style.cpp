@@ -54,8 +54,8 @@ tr.fail td { background: var(--fail-shade); }
 sup { font-size: .72em; line-height: 0; }
 pre { margin: .4rem 0; padding: .7rem .9rem; background: var(--shade); border-radius: .25rem; overflow-x: auto;
   font: .82rem/1.45 ui-monospace, "DejaVu Sans Mono", "Liberation Mono", monospace; overflow-wrap: normal; }
-.pictures { display: flex; flex-wrap: wrap; gap: 1rem; }
-.pictures figure { margin: 0; flex: 1 1 15rem; max-width: 100%; min-width: 0; }
+.pictures { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(15rem, 100%), 1fr)); gap: 1rem; }
+.pictures figure { margin: 0; min-width: 0; }
 .pictures h4 { margin: 0 0 .3rem; font-size: .92rem; }
 .pictures img { display: block; width: 100%; height: auto; border: 1px solid var(--rule); }
 .pictures img.small { image-rendering: pixelated; }

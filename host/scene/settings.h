@@ -61,8 +61,9 @@ struct ViewSettings {
 /// How a run estimates its own error.
 enum class EstimateEffort {
   off,    ///< not at all
-  quick,  ///< by a companion run on voxels twice as large, and formulas for light rays and steps; costs about a tenth
-  full,   ///< companion runs for those as well; costs about a third
+  quick,  ///< by a companion run on voxels twice as large, two runs of a few photons there, and formulas for light rays and
+          ///< steps; costs about a quarter of the run
+  full,   ///< companion runs for those as well; costs about as much as the run
 };
 
 struct SolverSettings {

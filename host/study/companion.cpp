@@ -2,6 +2,7 @@
 // See companion.h.
 #include "host/study/companion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -60,6 +61,10 @@ Alignment align(const GridFrame& coarse, const GridFrame& fine) {
   return a;
 }
 
+glm::ivec3 voxel_in_block(int v) {
+  return {v % kBlockEdge, v / kBlockEdge % kBlockEdge, v / (kBlockEdge * kBlockEdge)};
+}
+
 std::size_t index_of(const FluenceVolume& volume, glm::ivec3 voxel) {
   if (glm::any(glm::lessThan(voxel, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(voxel, volume.frame.voxels)))
     return std::size_t(-1);
@@ -106,8 +111,7 @@ std::vector<std::vector<float>> common_values(const SampledFluence& coarse,
     for (int v = 0; v < coarse.total.blocks.voxels_per_block(); ++v) {
       const std::size_t i = std::size_t(block) * coarse.total.blocks.voxels_per_block() + v;
       if (!coarse.media[i].participates) continue;
-      const glm::ivec3 voxel = coarse.total.blocks.coordinates(block) * kBlockEdge +
-                               glm::ivec3(v % kBlockEdge, v / kBlockEdge % kBlockEdge, v / (kBlockEdge * kBlockEdge));
+      const glm::ivec3 voxel = coarse.total.blocks.coordinates(block) * kBlockEdge + voxel_in_block(v);
       bool whole = true;
       for (std::size_t f = 0; f < fine.size() && whole; ++f) {
         const int times = to_fine[f].times, children = times * times * times;
@@ -127,6 +131,40 @@ std::vector<std::vector<float>> common_values(const SampledFluence& coarse,
           for (const std::size_t j : at[f]) sum += fine[f]->total.fluence[c * fine[f]->total.colour_stride() + j];
           values[1 + f].push_back(static_cast<float>(sum / static_cast<double>(at[f].size())));
         }
+      }
+    }
+  return values;
+}
+
+std::vector<std::vector<float>> interpolated_values(const SampledFluence& coarse,
+                                                    const std::vector<const SampledFluence*>& fine) {
+  std::vector<std::vector<float>> values(1 + fine.size());
+  if (fine.empty()) return values;
+  const FluenceVolume& grid = fine.front()->total;
+  const Alignment a = align(coarse.total.frame, grid.frame);
+  const std::size_t coarse_stride = coarse.total.colour_stride(), stride = grid.colour_stride();
+  const int per_block = grid.blocks.voxels_per_block();
+  for (int block = 0; block < grid.blocks.count(); ++block)
+    for (int v = 0; v < per_block; ++v) {
+      const std::size_t i = std::size_t(block) * per_block + v;
+      if (std::any_of(fine.begin(), fine.end(), [&](const auto* each) { return !each->media[i].participates; }))
+        continue;
+      const glm::ivec3 voxel = grid.blocks.coordinates(block) * kBlockEdge + voxel_in_block(v);
+      const glm::vec3 p = (glm::vec3(voxel - a.shift) + 0.5f) / float(a.times) - 0.5f;
+      const glm::ivec3 low(glm::floor(p));
+      double sum[3] = {}, weights = 0;
+      for (int corner = 0; corner < 8; ++corner) {
+        const glm::ivec3 at = low + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+        const glm::vec3 w = 1.0f - glm::abs(p - glm::vec3(at));
+        const std::size_t j = index_of(coarse.total, at);
+        if (j == std::size_t(-1) || !coarse.media[j].participates || !(w.x * w.y * w.z > 0)) continue;
+        weights += double(w.x) * w.y * w.z;
+        for (std::size_t c = 0; c < 3; ++c)
+          sum[c] += double(w.x) * w.y * w.z * coarse.total.fluence[c * coarse_stride + j];
+      }
+      for (std::size_t c = 0; c < 3; ++c) {
+        values[0].push_back(weights > 0 ? static_cast<float>(sum[c] / weights) : 0.0f);
+        for (std::size_t f = 0; f < fine.size(); ++f) values[1 + f].push_back(fine[f]->total.fluence[c * stride + i]);
       }
     }
   return values;

@@ -33,6 +33,12 @@ SampledFluence sample_fluence(const FluenceVolume&, const MediumVolume&);
 std::vector<std::vector<float>> common_values(const SampledFluence& coarse,
                                               const std::vector<const SampledFluence*>& fine, double least_share = 1);
 
+/// Values colour by colour at the voxels of `fine` that are active in each of them: the fluence of `coarse`,
+/// interpolated trilinearly between its active voxels, 0 where none is near; then that of each of `fine`, which share
+/// one grid. The grids fit as for common_values.
+std::vector<std::vector<float>> interpolated_values(const SampledFluence& coarse,
+                                                    const std::vector<const SampledFluence*>& fine);
+
 /// sqrt(sum (a - b)^2 / sum b^2); 0 / 0 is 0.
 double relative_l2(const std::vector<float>& a, const std::vector<float>& b);
 /// Root of `turbid compare`'s relMSE: sqrt(mean (a - b)^2 / (b^2 + (0.1 mean |b|)^2)), how far off a pixel is, relative

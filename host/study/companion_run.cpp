@@ -35,6 +35,25 @@ std::vector<float> surface_values(const ViewImage& image) {
   return values;
 }
 
+/// The same, black where nothing or the ground stands before what the pixel shows: what is left is seen through or in
+/// bodies. A pixel has one sample, at its middle.
+std::vector<float> seen_through(const ViewImage& image, const Camera& camera, const std::optional<Ground>& ground) {
+  std::vector<float> values = surface_values(image);
+  const glm::vec3 forward = glm::normalize(camera.target - camera.position),
+                  right = glm::normalize(glm::cross(forward, camera.up)), up = glm::cross(right, forward);
+  const float half = std::tan(glm::radians(0.5f * camera.fov));
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x) {
+      const std::size_t i = std::size_t(y) * std::size_t(camera.width) + std::size_t(x);
+      const float u = half * (2 * (float(x) + 0.5f) - float(camera.width)) / float(camera.height),
+                  v = half * (1 - 2 * (float(y) + 0.5f) / float(camera.height));
+      const glm::vec3 hit = camera.position + image.depth[i] * glm::normalize(forward + u * right + v * up);
+      const bool on_ground = ground && std::abs(hit.y - ground->height) < 1e-3f * image.depth[i];
+      if (image.depth[i] >= 1e10f || on_ground) std::fill_n(values.begin() + std::ptrdiff_t(3 * i), 3, 0.0f);
+    }
+  return values;
+}
+
 /// A picture without the noise of `noisy`: `own` and the mean of what `noisy` differs by around each pixel.
 std::vector<float> corrected(const std::vector<float>& own, const std::vector<float>& noisy, int width, int height) {
   std::vector<float> result(own.size());
@@ -97,8 +116,8 @@ CompanionRun::CompanionRun(cl::Session& session, const SceneOnGrid& in, const Sa
     camera_ = small_picture(in.scene.camera);
     const ViewImage image = view->look(camera_);
     picture_ = rgb_values(image);
-    direct_ = surface_values(image);
-    scattered_ = root_relmse(direct_, picture_);
+    through_ = seen_through(image, camera_, in.scene.surroundings.ground);
+    scattered_ = root_relmse(surface_values(image), picture_);
   }
   std::optional<Scene> scene = coarser_scene_of_same_size(in.scene, kTimes);
   if (!scene) return;
@@ -119,7 +138,7 @@ CompanionRun::Answer CompanionRun::seen(const SceneOnGrid& grid, const LightSolu
   if (picture_.empty()) return result;
   const ViewImage image = view_of(session_, grid, solution).look(camera_);
   result.picture = rgb_values(image);
-  result.direct = surface_values(image);
+  result.through = seen_through(image, camera_, grid.scene.surroundings.ground);
   return result;
 }
 
@@ -127,7 +146,7 @@ std::optional<Difference> CompanionRun::coarser() const {
   if (!base_) return std::nullopt;
   const auto values = common_values(base_->fluence, {&sampled_});
   return Difference{relative_l2(values[0], values[1]), root_relmse(base_->picture, picture_),
-                    root_relmse_of(base_->direct, direct_, picture_)};
+                    root_relmse_of(base_->through, through_, picture_)};
 }
 
 std::optional<Difference> CompanionRun::with(const MarchSettings& march) const {

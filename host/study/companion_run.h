@@ -14,7 +14,7 @@ namespace turbid {
 struct Difference {
   double fluence = 0;  ///< relative_l2
   double image = 0;    ///< root_relmse of a small picture
-  double direct = 0;   ///< the same by light from surfaces alone, seen straight or through media; of `coarser` only
+  double through = 0;  ///< the same by surfaces seen through bodies alone; of `coarser` only
 };
 
 /// What a photon run's picture scatters by, as the root of relMSE: from a second, short run beside it.
@@ -48,7 +48,7 @@ class CompanionRun {
  private:
   struct Answer {
     SampledFluence fluence;
-    std::vector<float> picture, direct;  ///< R, G, B: all light, that from surfaces; empty: none
+    std::vector<float> picture, through;  ///< R, G, B: all light, surfaces seen through bodies; empty: none
   };
 
   Answer seen(const SceneOnGrid&, const LightSolution&) const;
@@ -58,7 +58,7 @@ class CompanionRun {
   const SampledFluence& sampled_;
   mutable Progress quiet_{Verbosity::quiet};
   Camera camera_;
-  std::vector<float> picture_, direct_;  ///< of the run itself
+  std::vector<float> picture_, through_;  ///< of the run itself
   double scattered_ = 0;
   std::optional<SceneOnGrid> coarse_;
   std::optional<Answer> base_;

@@ -78,7 +78,8 @@ ParetoStudy pareto_study(cl::Session& session, const Scene& scene, const ParetoS
     const std::string kernels = one.solver.solver + std::to_string(one.medium.frame.voxel_size);
     if (one.solver.solver != "photon" && compiled.insert(kernels).second) run_scene(session, one, settings.picture);
     const SceneRun run = run_scene(session, one, settings.picture);
-    const ReferenceErrors errors = fluence_errors(sample_fluence(run.solution.volume, run.on_grid.medium), reference);
+    const ReferenceErrors errors =
+        fluence_errors_as_seen(sample_fluence(run.solution.volume, run.on_grid.medium), reference);
     SettingRun row{.setting = name_of(one), .solver = one.solver.solver, .error = errors.rel_l2};
     row.picture_error = settings.picture ? std::sqrt(image_errors(*run.image, reference).relmse) : kNotMeasured;
     row.seconds = run.seconds();

@@ -104,6 +104,11 @@ ReferenceErrors fluence_errors(const SampledFluence& x, const PhotonReference& r
   return errors_against(values[0], values[1], values[2]);
 }
 
+ReferenceErrors fluence_errors_as_seen(const SampledFluence& x, const PhotonReference& reference) {
+  const auto values = interpolated_values(x, {&reference.fluence_a, &reference.fluence_b});
+  return errors_against(values[0], values[1], values[2]);
+}
+
 std::vector<float> rgb_values(const ViewImage& image) {
   std::vector<float> values;
   values.reserve(3 * image.colour.size());

@@ -51,6 +51,8 @@ ReferenceErrors errors_against(const std::vector<float>& x, const std::vector<fl
 
 /// On voxels that are active in all of them, see common_values: those of x, or x's averaged if it is finer.
 ReferenceErrors fluence_errors(const SampledFluence& x, const PhotonReference&);
+/// On the reference's own voxels, whatever those of x: runs on different grids can be compared by it.
+ReferenceErrors fluence_errors_as_seen(const SampledFluence& x, const PhotonReference&);
 /// R, G, B of all pixels; both pictures have one size.
 ReferenceErrors image_errors(const ViewImage& x, const PhotonReference&);
 

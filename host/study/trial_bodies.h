@@ -10,7 +10,7 @@
 namespace turbid {
 
 enum class TrialSet {
-  calibration,  ///< the constants of error_estimate.cpp and model_error.cpp come from these
+  calibration,  ///< the constants of error_estimate.cpp are held against these
   held_out,     ///< no constant was chosen by looking at these
 };
 

@@ -42,6 +42,40 @@ TEST(Converge, what_cannot_be_refined_is_one_line_and_status_2) {
   EXPECT_EQ(place.content(), Words{"s.toml"});
 }
 
+TEST(Converge, what_cannot_be_weighed_or_estimated_is_one_line_and_status_2) {
+  const Workplace place;
+  place.write("s.toml", kMilkyBall);
+  place.write("blind.toml",
+              milky_ball_with("[camera]\nposition = [0, 10, 60]\nwidth = 48\nheight = 32\nsamples = 1\n", ""));
+  const auto run = [&](Words words) {
+    words.insert(words.begin(), "converge");
+    words.push_back("-q");
+    return place.turbid(words);
+  };
+  expect_refused(run({"--pareto"}), "expected a case or a scene");
+  expect_refused(run({"sphere_matched", "--pareto"}), "sphere_matched: expected a scene");
+  expect_refused(run({"s.toml", "--pareto", "--error", "0.05,2"}), "--error: expected errors in (0, 1)");
+  expect_refused(run({"s.toml", "--pareto", "--photons", "1"}), "--photons: expected 2");
+  expect_refused(run({"s.toml", "s.toml", "--pareto"}), "expected one case or scene");
+  expect_refused(run({"s.toml", "nowhere.toml", "--estimate"}), "nowhere.toml");
+  expect_refused(run({"blind.toml", "--estimate"}), "has no [camera]");
+  EXPECT_EQ(place.content(), (Words{"blind.toml", "s.toml"}));
+}
+
+TEST(Converge, weighing_a_scene_marks_what_is_worth_using_and_recommends_for_each_aim) {
+  const Workplace place;
+  place.write("s.toml", kMilkyBall);
+  const Outcome outcome = place.turbid({"converge", "s.toml", "--pareto", "--resolution", "16", "--photons", "2e4",
+                                        "--error", "0.5,0.001", "-q", "--json", "-o", "p/out"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(place.content(),
+            (Words{"p/", "p/out.html", "p/out.json", "p/out.recommended.csv", "p/out.runs.csv", "s.toml"}));
+  // Half is reached by diffusion, a thousandth by nothing but photons.
+  EXPECT_NE(outcome.out.find("50 %"), std::string::npos);
+  EXPECT_NE(outcome.out.find("0.1 %"), std::string::npos);
+  EXPECT_NE(outcome.out.find("photon"), std::string::npos);
+}
+
 TEST(Converge, refining_voxels_of_a_milky_ball_meets_the_expected_order_and_writes_a_page) {
   const Workplace place;
   place.write("s.toml", kMilkyBall);
@@ -82,6 +116,22 @@ TEST(RenderError, chooses_settings_says_which_and_reaches_the_asked_error) {
   const auto json = nlohmann::json::parse(outcome.out);
   EXPECT_NE(json["chosen"].get<std::string>().find("voxels, step"), std::string::npos);
   EXPECT_LE(json["error_estimate"]["picture"]["total"].get<double>(), 0.5);
+}
+
+TEST(RenderError, an_error_that_cannot_be_met_is_refused_or_told) {
+  const Workplace place;
+  place.write("s.toml", kMilkyBall);
+  for (const char* bad : {"0", "-0.1", "2", "few"})
+    expect_refused(place.turbid({"render", "s.toml", "--error", bad, "-q", "-o", "out"}), "error");
+  EXPECT_EQ(place.content(), Words{"s.toml"});
+  // So coarse a grid is kept because it is asked for.
+  const Outcome outcome =
+      place.turbid({"render", "s.toml", "--error", "0.12", "--resolution", "8", "--json", "-o", "out"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  const bool told = outcome.err.find("more than the 0.12 asked for") != std::string::npos;
+  EXPECT_EQ(told, json["error_estimate"]["picture"]["total"].get<double>() > 0.12) << outcome.err;
+  EXPECT_NE(json["chosen"].get<std::string>().find("8 voxels"), std::string::npos);
 }
 
 TEST(RenderError, every_run_reports_the_parts_of_its_error) {

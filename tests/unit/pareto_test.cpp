@@ -31,6 +31,13 @@ TEST(Pareto, only_runs_that_no_other_beats_in_both_speed_and_error_are_worth_usi
   for (std::size_t i = 0; i < runs.size(); ++i) EXPECT_EQ(runs[i].efficient, expected[i]) << i;
 }
 
+TEST(Pareto, one_per_cent_of_an_error_is_not_worth_time) {
+  std::vector<SettingRun> runs{measured(0.1, 1), measured(0.0995, 2), measured(0.09, 3), measured(0.1, 1.5)};
+  mark_efficient(runs);
+  const std::vector<bool> expected{true, false, true, false};
+  for (std::size_t i = 0; i < runs.size(); ++i) EXPECT_EQ(runs[i].efficient, expected[i]) << i;
+}
+
 TEST(Pareto, the_fastest_run_within_the_aim_is_recommended) {
   const std::vector<SettingRun> runs{measured(0.1, 1), measured(0.04, 5), measured(0.045, 3), measured(0.01, 10)};
   EXPECT_EQ(recommended(runs, 0.05), 2u);
@@ -65,6 +72,9 @@ TEST(ChooseSettings, are_photons_where_diffusion_itself_is_too_wrong) {
   const ErrorParts at{.grid = 0.01, .steps = 0.001, .rays = 0.001, .solve = 1e-4, .model = 0.12};
   EXPECT_TRUE(choose_settings(at, 30, {64, 0.5f, 4, 1e-4f}, 0.02).photon);
   EXPECT_FALSE(choose_settings(at, 30, {64, 0.5f, 4, 1e-4f}, 0.3).photon);
+  // Half the aim is theirs: 30 / sqrt(photons) = 0.01 where voxels stay as large.
+  const ChosenSettings chosen = choose_settings(at, 30, {64, 0.5f, 4, 1e-4f}, 0.02);
+  EXPECT_NEAR(chosen.photons, 9e6 * std::pow(chosen.with.voxels / 64.0, 2), 1);
 }
 
 TEST(ReferenceErrors, take_the_scatter_of_the_reference_out) {

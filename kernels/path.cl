@@ -15,7 +15,8 @@ kernel void follow_path(MEDIUM_ARGUMENTS, global float* rays, float step_size, i
   ray.grace = 0.0f;
   float arc = data[7];
   int surfaces = (int)data[8], face = -1;
-  for (int i = 0; i < steps; ++i) {
+  const float end = arc + step_size * steps;
+  for (int i = 0; i < steps && arc < end; ++i) {
     const int region = ray.region;
     const Step step = advance(&medium, &ray, step_size, 0.0f);
     arc += step.length;

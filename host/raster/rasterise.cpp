@@ -4,6 +4,7 @@
 // the ray, and at silhouettes insides showed that no ray sees.)
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "host/base/errors.h"
@@ -131,6 +132,34 @@ void store_hit(RasterImage& image, std::size_t at, const Ray& ray, const Hit& hi
   image.front[at] = faces(ray, p) ? 1 : 0;
 }
 
+/// A context and its target, kept for the next picture of this thread: a driver compiles shaders anew for each context, which
+/// takes longer than drawing.
+class Canvas {
+ public:
+  /// With room for tiles of this size, up to `largest()`.
+  NumberTarget& target(int width, int height) {
+    if (!target_ || width > width_ || height > height_) {
+      width_ = std::max(width, width_);
+      height_ = std::max(height, height_);
+      target_.reset();
+      target_ = std::make_unique<NumberTarget>(context_, width_, height_);
+    }
+    return *target_;
+  }
+  int largest() const { return std::min(kTile, NumberTarget::largest_size(context_)); }
+
+ private:
+  OsmesaContext context_;
+  std::unique_ptr<NumberTarget> target_;
+  int width_ = 0, height_ = 0;
+};
+
+Canvas& canvas_of_thread() {
+  thread_local std::unique_ptr<Canvas> canvas;
+  if (!canvas) canvas = std::make_unique<Canvas>();
+  return *canvas;
+}
+
 }  // namespace
 
 RasterImage rasterise(std::span<const RasterMesh> meshes, const RasterView& view) {
@@ -146,9 +175,9 @@ RasterImage rasterise(std::span<const RasterMesh> meshes, const RasterView& view
 
   const TriangleTable table(meshes);
   const PixelRays rays(view);
-  const OsmesaContext context;
-  const int limit = std::min(kTile, NumberTarget::largest_size(context));
-  NumberTarget target(context, std::min(limit, view.width), std::min(limit, view.height));
+  Canvas& canvas = canvas_of_thread();
+  const int limit = canvas.largest();
+  NumberTarget& target = canvas.target(std::min(limit, view.width), std::min(limit, view.height));
   std::vector<std::uint32_t> numbers;
   for (int top = 0; top < view.height; top += limit)
     for (int left = 0; left < view.width; left += limit) {

@@ -22,7 +22,8 @@ struct PathRay {
 };
 
 /// Traces rays as the march does (kernels/lib/trace.h), always along the refracted branch (the reflected one where
-/// reflection is total), until they stand on a face of the domain or `steps` steps of arc `step` [voxels] are done.
+/// reflection is total), until they stand on a face of the domain, or have done `steps` steps or as long an arc as so many
+/// of `step` [voxels] make.
 std::vector<PathRay> trace(cl::Session&, const DeviceMedium&, const std::vector<PathRay>&, float step, int steps);
 
 }  // namespace turbid::study

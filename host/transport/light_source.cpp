@@ -74,7 +74,9 @@ class Gathering {
     }
     finish(source);
     if (moments_) add_first_moment(medium_, moment_, foreign_, source.left);
-    for (std::size_t at = 0; at < foreign_.size(); ++at) source.power[at] += static_cast<float>(foreign_[at]);
+    parallel_ranges(static_cast<int>(foreign_.size()), [&](int begin, int end) {
+      for (int at = begin; at < end; ++at) source.power[at] += static_cast<float>(foreign_[at]);
+    });
     source.deposited += source.unresolved;
     return source;
   }

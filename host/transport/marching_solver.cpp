@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/base/errors.h"
+#include "host/base/parallel.h"
 
 namespace turbid {
 
@@ -20,12 +21,22 @@ double EnergyBalance::imbalance() const {
 
 void account(const DiffusionMedium& medium, DiffuseLight& light) {
   const std::size_t stride = medium.stride();
-  for (int c = 0; c < medium.channels; ++c) {
-    for (std::size_t i = 0; i < stride; ++i) {
-      light.absorbed[c] += static_cast<double>(medium.s_a[c * stride + i]) * light.fluence[c * stride + i];
+  const int blocks = medium.blocks.count();
+  // Block by block, so that the sums do not depend on the number of threads.
+  std::vector<glm::dvec3> absorbed(blocks, glm::dvec3(0));
+  parallel_ranges(blocks, [&](int begin, int end) {
+    for (int block = begin; block < end; ++block) {
+      for (int c = 0; c < medium.channels; ++c) {
+        for (std::size_t at = medium.index(c, block, 0); at < medium.index(c, block + 1, 0); ++at) {
+          absorbed[block][c] += static_cast<double>(medium.s_a[at]) * light.fluence[at];
+        }
+      }
     }
-    for (const BoundaryFace& face : medium.boundary) {
-      const double power = medium.boundary_conductance(face, c) * light.fluence[medium.index(c, face.block, face.voxel)];
+  });
+  for (const glm::dvec3& watts : absorbed) light.absorbed += watts;
+  for (const BoundaryFace& face : medium.boundary) {
+    for (int c = 0; c < medium.channels; ++c) {
+      const double power = medium.boundary_conductance(face, c) * light.fluence[c * stride + face.block * std::size_t{512} + face.voxel];
       (face.opaque ? light.absorbed_opaque : light.escaped[face.face])[c] += power;
     }
   }
@@ -132,12 +143,14 @@ LightSolution MarchingSolver::light(const LightList& lights) {
   const glm::vec3 tint = channels == 3 ? glm::vec3(1) : context_.features.tint;
   for (int c = 0; c < 3; ++c) {
     const std::size_t from = channels == 3 ? c : 0;
-    for (std::size_t i = 0; i < stride; ++i) {
-      solution.volume.fluence[c * stride + i] = tint[c] * to_fluence * diffuse_light.fluence[from * stride + i];
-      if (!source.density.empty()) {
-        solution.volume.deposit[c * stride + i] = tint[c] * to_density * source.density[from * stride + i];
+    parallel_ranges(diffusion.blocks.count(), [&](int begin, int end) {
+      for (std::size_t i = begin * std::size_t{512}; i < end * std::size_t{512}; ++i) {
+        solution.volume.fluence[c * stride + i] = tint[c] * to_fluence * diffuse_light.fluence[from * stride + i];
+        if (!source.density.empty()) {
+          solution.volume.deposit[c * stride + i] = tint[c] * to_density * source.density[from * stride + i];
+        }
       }
-    }
+    });
   }
   if (channels == 1) {
     auto spread = [&](glm::dvec3& value) { value = value.x * glm::dvec3(tint); };

@@ -177,6 +177,19 @@ TEST(SteadySolve, FindsTheSolutionOfTheDenseOperator) {
   EXPECT_LE(result.residual_sum, 1e-6);
 }
 
+TEST(SteadySolve, HoldsAtMost64BytesPerActiveVoxelAndColour) {
+  MediumDescription box = test::empty_domain({64, 64, 64}, 1.0f), ball = test::empty_domain({96, 96, 96}, 1.0f);
+  const auto milk = test::make_material({.sigma_s = glm::vec3(1)});
+  test::add_body(box, make_box({80, 80, 80}, test::at({32, 32, 32})), milk);
+  test::add_body(ball, make_sphere(44, test::at({48, 48, 48})), milk);
+  for (const MediumDescription* scene : {&box, &ball}) {
+    const DiffusionMedium medium = test::random_medium(*scene, 0.1, 1, 7, 3);
+    const SteadySolve solve(test::session(), medium, {});
+    // A full block takes 40 bytes with the coarser levels; a ball's surface blocks are half empty.
+    EXPECT_LE(static_cast<double>(solve.device_bytes()) / (3.0 * static_cast<double>(medium.active_voxels)), 64);
+  }
+}
+
 TEST(SteadySolve, TheSecondSolveForgetsTheFirst) {
   const DiffusionMedium medium = test::random_medium(mixed_scene(), 0.1, 10, 18);
   std::vector<float> q1(medium.stride(), 0.0f), q2 = q1;

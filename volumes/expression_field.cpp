@@ -3,8 +3,13 @@
 #include <muParser.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <utility>
+#include <vector>
 
 #include "host/base/errors.h"
 #include "volumes/noise.h"
@@ -13,8 +18,22 @@
 namespace turbid {
 namespace {
 
+/// The colours of a field often ask for the same noise one after the other, point by point: each thread keeps what it
+/// found last.
 double fbm(double x, double y, double z, double octaves) {
-  return fractal_noise(x, y, z, octaves >= 1.0 ? static_cast<int>(std::min(octaves, 16.0)) : 1);
+  struct Known {
+    std::array<double, 4> at{std::numeric_limits<double>::quiet_NaN()};
+    double value = 0;
+  };
+  constexpr std::size_t kKnown = 8192;
+  thread_local std::vector<Known> known(kKnown);
+  const std::array<double, 4> at{x, y, z, octaves};
+  std::uint64_t hash = 0;
+  for (double number : at)
+    hash = (hash ^ std::bit_cast<std::uint64_t>(number)) * 0x9e3779b97f4a7c15ull, hash ^= hash >> 29;
+  Known& one = known[hash % kKnown];
+  if (one.at != at) one = {at, fractal_noise(x, y, z, octaves >= 1.0 ? static_cast<int>(std::min(octaves, 16.0)) : 1)};
+  return one.value;
 }
 double clamp(double v, double lo, double hi) {
   return std::min(std::max(v, lo), hi);

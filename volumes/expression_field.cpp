@@ -140,14 +140,16 @@ class ExpressionField final : public Field {
   std::optional<glm::vec3> constant() const override { return constant_; }
 
   void evaluate(std::span<const glm::vec3> positions, std::span<glm::vec3> values) const override {
-    for (int c = 0; c < 3; ++c) {
-      const int same = c > 0 && texts_[c] == texts_[0] ? 0 : c == 2 && texts_[2] == texts_[1] ? 1 : c;
-      if (same != c) {
-        for (glm::vec3& value : values) value[c] = value[same];
-        continue;
+    Program programs[3]{Program(texts_[0]), Program(texts_[1]), Program(texts_[2])};
+    constexpr std::size_t kPiece = 512;  // all colours of few points before the next: see fbm
+    for (std::size_t begin = 0; begin < positions.size(); begin += kPiece) {
+      const std::size_t end = std::min(begin + kPiece, positions.size());
+      for (int c = 0; c < 3; ++c) {
+        const int same = c > 0 && texts_[c] == texts_[0] ? 0 : c == 2 && texts_[2] == texts_[1] ? 1 : c;
+        for (std::size_t i = begin; i < end; ++i) {
+          values[i][c] = same != c ? values[i][same] : static_cast<float>(programs[c](positions[i]));
+        }
       }
-      Program program(texts_[c]);
-      for (std::size_t i = 0; i < positions.size(); ++i) values[i][c] = static_cast<float>(program(positions[i]));
     }
   }
 

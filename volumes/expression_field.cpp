@@ -3,8 +3,13 @@
 #include <muParser.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <utility>
+#include <vector>
 
 #include "host/base/errors.h"
 #include "volumes/noise.h"
@@ -13,8 +18,22 @@
 namespace turbid {
 namespace {
 
+/// The colours of a field often ask for the same noise one after the other, point by point: each thread keeps what it
+/// found last.
 double fbm(double x, double y, double z, double octaves) {
-  return fractal_noise(x, y, z, octaves >= 1.0 ? static_cast<int>(std::min(octaves, 16.0)) : 1);
+  struct Known {
+    std::array<double, 4> at{std::numeric_limits<double>::quiet_NaN()};
+    double value = 0;
+  };
+  constexpr std::size_t kKnown = 8192;
+  thread_local std::vector<Known> known(kKnown);
+  const std::array<double, 4> at{x, y, z, octaves};
+  std::uint64_t hash = 0;
+  for (double number : at)
+    hash = (hash ^ std::bit_cast<std::uint64_t>(number)) * 0x9e3779b97f4a7c15ull, hash ^= hash >> 29;
+  Known& one = known[hash % kKnown];
+  if (one.at != at) one = {at, fractal_noise(x, y, z, octaves >= 1.0 ? static_cast<int>(std::min(octaves, 16.0)) : 1)};
+  return one.value;
 }
 double clamp(double v, double lo, double hi) {
   return std::min(std::max(v, lo), hi);
@@ -121,14 +140,16 @@ class ExpressionField final : public Field {
   std::optional<glm::vec3> constant() const override { return constant_; }
 
   void evaluate(std::span<const glm::vec3> positions, std::span<glm::vec3> values) const override {
-    for (int c = 0; c < 3; ++c) {
-      const int same = c > 0 && texts_[c] == texts_[0] ? 0 : c == 2 && texts_[2] == texts_[1] ? 1 : c;
-      if (same != c) {
-        for (glm::vec3& value : values) value[c] = value[same];
-        continue;
+    Program programs[3]{Program(texts_[0]), Program(texts_[1]), Program(texts_[2])};
+    constexpr std::size_t kPiece = 512;  // all colours of few points before the next: see fbm
+    for (std::size_t begin = 0; begin < positions.size(); begin += kPiece) {
+      const std::size_t end = std::min(begin + kPiece, positions.size());
+      for (int c = 0; c < 3; ++c) {
+        const int same = c > 0 && texts_[c] == texts_[0] ? 0 : c == 2 && texts_[2] == texts_[1] ? 1 : c;
+        for (std::size_t i = begin; i < end; ++i) {
+          values[i][c] = same != c ? values[i][same] : static_cast<float>(programs[c](positions[i]));
+        }
       }
-      Program program(texts_[c]);
-      for (std::size_t i = 0; i < positions.size(); ++i) values[i][c] = static_cast<float>(program(positions[i]));
     }
   }
 

@@ -20,10 +20,7 @@ std::uint64_t mix(std::uint64_t h) {
   return h ^ (h >> 31);
 }
 
-double gradient_dot(std::int64_t i, std::int64_t j, std::int64_t k, double x, double y, double z) {
-  std::uint64_t h = mix(static_cast<std::uint64_t>(i) + 0x9e3779b97f4a7c15ull);
-  h = mix(h + static_cast<std::uint64_t>(j));
-  h = mix(h + static_cast<std::uint64_t>(k));
+double gradient_dot(std::uint64_t h, double x, double y, double z) {
   const int edge = static_cast<int>((h >> 32) % 12);
   const double u = edge < 8 ? x : y;
   const double v = edge < 4 ? y : z;
@@ -49,9 +46,16 @@ double gradient_noise(double x, double y, double z) {
   y -= fy;
   z -= fz;
   double corner[2][2][2];
-  for (int c = 0; c < 2; ++c)
-    for (int b = 0; b < 2; ++b)
-      for (int a = 0; a < 2; ++a) corner[c][b][a] = gradient_dot(i + a, j + b, k + c, x - a, y - b, z - c);
+  // The corners' hashes are of i, then j, then k: those of a line or plane begin alike.
+  for (int a = 0; a < 2; ++a) {
+    const std::uint64_t of_x = mix(static_cast<std::uint64_t>(i + a) + 0x9e3779b97f4a7c15ull);
+    for (int b = 0; b < 2; ++b) {
+      const std::uint64_t of_xy = mix(of_x + static_cast<std::uint64_t>(j + b));
+      for (int c = 0; c < 2; ++c) {
+        corner[c][b][a] = gradient_dot(mix(of_xy + static_cast<std::uint64_t>(k + c)), x - a, y - b, z - c);
+      }
+    }
+  }
   const double u = fade(x), v = fade(y), w = fade(z);
   const double lower = lerp(v, lerp(u, corner[0][0][0], corner[0][0][1]), lerp(u, corner[0][1][0], corner[0][1][1]));
   const double upper = lerp(v, lerp(u, corner[1][0][0], corner[1][0][1]), lerp(u, corner[1][1][0], corner[1][1][1]));

@@ -135,7 +135,7 @@ Goal march_goal(cl::Session& session, int voxels, int repeats, bool deposits) {
   goal.ratio = spread_of(theirs).median / spread_of(ours).median;  // the same rays: time against time
   goal.aim = deposits ? 0.75 : 0.95;
   goal.ours = rate("march.cl", static_cast<double>(tallies.work.steps), spread_of(ours).median);
-  goal.against = rate("C++, 8 rays interleaved", static_cast<double>(sums.steps), spread_of(theirs).median);
+  goal.against = rate("C++, 16 rays in step", static_cast<double>(sums.steps), spread_of(theirs).median);
   goal.error = difference("escaped powers", worst);
   return goal;
 }
@@ -228,7 +228,7 @@ Goal view_goal(cl::Session& session, int voxels, int repeats) {
   goal.ratio = spread_of(theirs).median / spread_of(ours).median;
   goal.aim = 0.9;
   goal.ours = rate("view.cl", static_cast<double>(image.steps), spread_of(ours).median);
-  goal.against = rate("C++, 8 rays interleaved", static_cast<double>(steps), spread_of(theirs).median);
+  goal.against = rate("C++, 16 rays in step", static_cast<double>(steps), spread_of(theirs).median);
   goal.error = difference("radiances (rel-L2)", std::sqrt(squares / all));
   return goal;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hand-written C++ of what march.cl and view.cl do in one graded region with constant coefficients: the same rays, the same
-// drift-kick-drift, several rays interleaved per thread, vectors written out. What the kernels' speed is measured against.
+// drift-kick-drift, sixteen rays in step per thread, vectors written out. What the kernels' speed is measured against.
 #pragma once
 #include <array>
 #include <cstdint>

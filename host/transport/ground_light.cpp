@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "host/base/parallel.h"
+
 namespace turbid {
 namespace {
 
@@ -39,18 +41,20 @@ void smooth_ground_light(GroundLight* ground, const std::vector<int>& rays) {
   const SummedArea power[3] = {{size, [&](int i) { return static_cast<double>(ground->irradiance[i].r); }},
                                {size, [&](int i) { return static_cast<double>(ground->irradiance[i].g); }},
                                {size, [&](int i) { return static_cast<double>(ground->irradiance[i].b); }}};
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      for (int reach = 0; reach <= kLargestReach; ++reach) {
-        const int x0 = std::max(x - reach, 0), x1 = std::min(x + reach + 1, size);
-        const int y0 = std::max(y - reach, 0), y1 = std::min(y + reach + 1, size);
-        if (counts.sum(x0, y0, x1, y1) < kEnoughRays && reach < kLargestReach) continue;
-        const double area = static_cast<double>(x1 - x0) * (y1 - y0);
-        for (int c = 0; c < 3; ++c) ground->irradiance[y * size + x][c] = static_cast<float>(power[c].sum(x0, y0, x1, y1) / area);
-        break;
+  parallel_ranges(size, [&](int begin, int end) {
+    for (int y = begin; y < end; ++y)
+      for (int x = 0; x < size; ++x) {
+        for (int reach = 0; reach <= kLargestReach; ++reach) {
+          const int x0 = std::max(x - reach, 0), x1 = std::min(x + reach + 1, size);
+          const int y0 = std::max(y - reach, 0), y1 = std::min(y + reach + 1, size);
+          if (counts.sum(x0, y0, x1, y1) < kEnoughRays && reach < kLargestReach) continue;
+          const double area = static_cast<double>(x1 - x0) * (y1 - y0);
+          for (int c = 0; c < 3; ++c)
+            ground->irradiance[y * size + x][c] = static_cast<float>(power[c].sum(x0, y0, x1, y1) / area);
+          break;
+        }
       }
-    }
-  }
+  });
 }
 
 }  // namespace turbid

@@ -107,6 +107,7 @@ std::vector<AccuracyRow> accuracy_rows(cl::Session& session, Scene scene, const 
   for (const char* solver : {"steady", "lattice"}) {
     tell(scene.name + " " + solver);
     scene.solver.solver = solver;
+    run_scene(session, scene, scene.has_camera);  // compiles the kernels
     const SceneRun run = run_scene(session, scene, scene.has_camera);
     const ReferenceErrors errors = fluence_errors(sample_fluence(run.solution.volume, run.on_grid.medium), reference);
     const EnergyBalance& e = run.solution.report.energy;

@@ -18,43 +18,27 @@ struct FieldKernel {
   const char* how;
 };
 
+// One collision of a voxel's six populations (kernels/lib/collision.h).
+constexpr double kCollision = 38, kMeasured = 58;
+constexpr const char* kCollisionCount =
+    "per voxel and colour: 5 sums of populations, 3 for phi', 3 for the base, 3 x 9 for even and odd parts";
+constexpr const char* kMeasuredCount = "the same, and 20 for fluence and sums";
+
 // A x of one voxel: six differences, products and sums, the diagonal's product: 20.
 const std::vector<FieldKernel>& field_kernels() {
   static const std::vector<FieldKernel> table{
       {"sweep",
        "source",
-       50,
+       kCollision + 2,
        "inner",
        {"populations", "fluence"},
-       "per voxel, colour and inner step: 5 sums of populations, 3 for phi', 3 x 14 for even and odd parts"},
-      {"step_local",
-       "source",
-       38,
-       nullptr,
-       {"slots"},
-       "per place: 5 sums of populations, 3 for phi', 3 for the base, 3 x 9 for even and odd parts"},
-      {"step_crossing",
-       "source",
-       38,
-       nullptr,
-       {"slots"},
-       "per place: 5 sums of populations, 3 for phi', 3 for the base, 3 x 9 for even and odd parts"},
-      {"measure_local",
-       "source",
-       58,
-       nullptr,
-       {"slots", "fluence"},
-       "per place: 5 sums of populations, 3 for phi', 3 for the base, 3 x 9 for even and odd parts; 20 for fluence and "
-       "sums"},
-      {"measure_crossing",
-       "source",
-       58,
-       nullptr,
-       {"slots", "fluence"},
-       "per place: 5 sums of populations, 3 for phi', 3 for the base, 3 x 9 for even and odd parts; 20 for fluence and "
-       "sums"},
+       "per voxel, colour and inner step: a collision (38) and two sums of what is sent across x"},
+      {"step_local", "source", kCollision, nullptr, {"slots"}, kCollisionCount},
+      {"step_crossing", "source", kCollision, nullptr, {"slots"}, kCollisionCount},
+      {"measure_local", "source", kMeasured, nullptr, {"slots", "fluence"}, kMeasuredCount},
+      {"measure_crossing", "source", kMeasured, nullptr, {"slots", "fluence"}, kMeasuredCount},
       {"exchange", "lost", 6, nullptr, {}, "per face and colour: two weighted sums of two"},
-      {"balance", "source", 64, nullptr, {}, "one lattice step, and 14 for sums of absorbed and escaped power"},
+      {"departures", "populations", 4, nullptr, {}, "per population: a compensated sum"},
       {"smooth_down", "b", 13, "sweeps", {}, "per voxel, colour and sweep: six products and sums, the scaling"},
       {"smooth_up", "b", 13, "sweeps", {}, "per voxel, colour and sweep: six products and sums, the scaling"},
       {"coarse_cycle",
@@ -82,7 +66,7 @@ KernelWork per_step(const SceneFeatures& f) {
     step.operations += times * 7 * width * 3;
   };
   if (f.heterogeneous) interpolate(f.channels == 3 ? 8 : 2, 1);
-  if (f.graded_index) interpolate(4, 2);                                 // both kicks
+  if (f.graded_index) interpolate(4, 1);                                 // the kick between two half drifts
   if (f.absorption || f.scattering) step.operations += 12 * f.channels;  // extinction: exp counted as 8
   return step;
 }

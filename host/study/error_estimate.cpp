@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See error_estimate.h. Where the constants come from stands beside them; tests/verify/estimate_test.cpp holds them to
-// it.
+// See error_estimate.h. Where the constants come from stands beside them; case estimate_covers (cases_estimate.cpp) holds them
+// to it.
 #include "host/study/error_estimate.h"
 
 #include <algorithm>

@@ -98,6 +98,8 @@ void bench(BenchOptions options) {
   for (const NamedExperiment& one : chosen.experiments) {
     progress.stage(one.name);
     document.sections.push_back(experiment_section(one.measure(session, options.settings)));
+    document.summary = "Not finished: what was measured up to part " + one.name + ".";
+    write_document(document, prefix);  // an interruption loses no part that is done
   }
   if (chosen.threads) {
     progress.stage("threads");

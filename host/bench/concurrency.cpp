@@ -15,7 +15,7 @@ namespace turbid {
 namespace {
 
 constexpr double kGain = 0.05;  // a smaller difference of times is not called one
-constexpr double kMostSeconds = 120;
+constexpr double kMostSeconds = 40;
 
 /// How the two passes share the device.
 struct Arrangement {

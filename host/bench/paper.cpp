@@ -14,7 +14,7 @@
 namespace turbid {
 namespace {
 
-constexpr double kMostSeconds = 120;  // of one experiment's repeated rounds
+constexpr double kMostSeconds = 40;  // of one experiment's repeated rounds
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 int resolution_of(const BenchSettings& settings) {

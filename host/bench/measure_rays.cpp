@@ -140,29 +140,33 @@ Goal march_goal(cl::Session& session, int voxels, int repeats, bool deposits) {
   return goal;
 }
 
-/// Camera samples as the kernel begins them, in plain C++.
-std::vector<reference::RayStart> camera_rays(const Strip& strip, const reference::RayMedium& medium, float eta_observer) {
+/// eta^2 / 2 at a point, or at the nearest one of the domain.
+float half_square_of_eta(const reference::RayMedium& medium, glm::vec3 point) {
   const int n = medium.n;
+  const glm::vec3 y = glm::clamp(point - 0.5f, glm::vec3(0), glm::vec3(static_cast<float>(n - 1)));
+  const glm::ivec3 cell = glm::min(glm::ivec3(y), n - 2);
+  const glm::vec3 f = y - glm::vec3(cell);
+  float u = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 d(corner & 1, corner >> 1 & 1, corner >> 2), at = cell + d;
+    const glm::vec3 w = glm::mix(1.0f - f, f, glm::vec3(d));
+    u += w.x * w.y * w.z * medium.index[4 * (at.x + static_cast<std::size_t>(n) * (at.y + n * at.z)) + 3];
+  }
+  return u;
+}
+
+/// Camera samples as the kernel begins them, in plain C++; camera [voxels].
+std::vector<reference::RayStart> camera_rays(const Strip& strip, const reference::RayMedium& medium, glm::vec3 camera) {
+  const float square_at_observer = 2.0f * half_square_of_eta(medium, camera);
   std::vector<reference::RayStart> rays;
   for (const ViewSample& sample : strip.samples) {
-    glm::ivec3 cell;
-    glm::vec3 f;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float y = std::clamp(sample.position[axis] - 0.5f, 0.0f, static_cast<float>(n - 1));
-      cell[axis] = std::min(static_cast<int>(y), n - 2);
-      f[axis] = y - static_cast<float>(cell[axis]);
-    }
-    float u = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::ivec3 d(corner & 1, corner >> 1 & 1, corner >> 2), at = cell + d;
-      const glm::vec3 w = glm::mix(1.0f - f, f, glm::vec3(d));
-      u += w.x * w.y * w.z * medium.index[4 * (at.x + static_cast<std::size_t>(n) * (at.y + n * at.z)) + 3];
-    }
+    const glm::vec3 position(sample.position[0], sample.position[1], sample.position[2]);
+    const float eta = std::sqrt(2.0f * half_square_of_eta(medium, position));
     reference::RayStart ray{};
     for (int i = 0; i < 3; ++i) {
       ray.position[i] = sample.position[i];
-      ray.velocity[i] = sample.direction[i] * std::sqrt(2.0f * u);
-      ray.power[i] = sample.region < 0 ? 0.0f : eta_observer * eta_observer;
+      ray.velocity[i] = sample.direction[i] * eta;
+      ray.power[i] = sample.region < 0 ? 0.0f : square_at_observer;
     }
     rays.push_back(ray);
   }
@@ -198,7 +202,7 @@ Goal view_goal(cl::Session& session, int voxels, int repeats) {
   medium.source = dense(*device, device->region_params[0].source_set, make_source_tiles(solution.volume, scene.volume, *device));
   const EntrySurfaces surfaces = entry_surfaces(scene.description, scene.volume, true);
   const Strip strip = SampleMaker(in, camera, surfaces, {device->frame}).strip(0, camera.height);
-  const std::vector<reference::RayStart> rays = camera_rays(strip, medium, device->region_params[0].eta);
+  const std::vector<reference::RayStart> rays = camera_rays(strip, medium, camera.position);
 
   ViewPass pass(session, in);
   ViewImage image;

@@ -121,9 +121,11 @@ SceneRefinement refine_scene(cl::Session& session, const ReadScene& read, const 
     if (settings.beside) scene = scene_at(settings.beside->parameter, settings.beside->level, 0, std::move(scene));
     std::vector<std::vector<StageTime>> times;
     SceneLevel result{.level = level, .h = h_of(parameter, level, scene)};
-    for (int i = 0; i < std::max(1, settings.repeat); ++i) {
+    // The first run on a grid compiles its kernels and is not timed; beside photons that is nothing.
+    const int warming_up = scene.solver.solver == "photon" ? 0 : 1;
+    for (int i = 0; i < warming_up + std::max(1, settings.repeat); ++i) {
       SceneRun run = run_scene(session, scene, settings.picture);
-      times.push_back(run.times);
+      if (i >= warming_up) times.push_back(run.times);
       result.peak_memory = std::max(result.peak_memory, run.peak_memory);
       if (i == 0) answers.push_back(answer_of(run));
     }

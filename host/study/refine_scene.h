@@ -32,7 +32,7 @@ void check_levels(const SceneParameter&, const std::vector<double>& levels);
 
 struct RefineSettings {
   std::vector<double> levels;   ///< checked
-  int repeat = 1;               ///< runs per level; times are medians
+  int repeat = 1;               ///< timed runs per level, after one that warms up; times are medians
   bool picture = false;         ///< look at each level, and compare the pictures too
   bool against_photon = false;  ///< else against finer levels
   ReferenceSettings reference;  ///< of the photons

@@ -62,5 +62,7 @@ void install_interrupt_handler();
 bool interrupt_requested();
 /// Wall clock [s] from a steady clock.
 double wall_time();
+/// Processor time of all threads of this process so far [s].
+double processor_time();
 
 }  // namespace turbid

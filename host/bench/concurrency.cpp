@@ -4,18 +4,18 @@
 // what two queues gain when kernels leave cores idle, and when they don't. Event times can overlap fully with no gain
 // at all.
 #include <algorithm>
-#include <ctime>
 #include <functional>
 #include <thread>
 
+#include "host/bench/filled_cube.h"
 #include "host/bench/light_run.h"
 #include "host/bench/paper.h"
+#include "host/study/error_measures.h"
 
 namespace turbid {
 namespace {
 
 constexpr double kGain = 0.05;  // a smaller difference of times is not called one
-constexpr double kMostSeconds = 40;
 
 /// How the two passes share the device.
 struct Arrangement {
@@ -24,18 +24,6 @@ struct Arrangement {
   int sweeps;       ///< beside each batch
   int workers;      ///< work-items that march; 0: one per core
 };
-
-SceneOverrides cube(const BenchSettings& settings) {
-  SceneOverrides overrides;
-  overrides.resolution = settings.quick ? 32 : 128;
-  overrides.solver = "lattice";
-  if (settings.quick) overrides.settings = {"camera.width=128", "camera.height=128"};
-  return overrides;
-}
-
-std::string scene_of(const BenchSettings& settings) {
-  return settings.scene("bubbly_cube.toml");
-}
 
 }  // namespace
 
@@ -51,7 +39,7 @@ Experiment concurrent_or_not(cl::Session& session, const BenchSettings& settings
           figures("Bubbly cube at %d^3, solver lattice, wall time of march and diffusion, runs interleaved. The "
                   "lattice relaxes what earlier batches left while the next one marches; or it waits; or all rays "
                   "march first. Fewer workers: the march leaves cores idle.",
-                  *cube(settings).resolution),
+                  cube_resolution(settings)),
       .columns = {{"time", "ms"},
                   {"min", "ms"},
                   {"max", "ms"},
@@ -70,7 +58,7 @@ Experiment concurrent_or_not(cl::Session& session, const BenchSettings& settings
     arrangements.push_back({"batches of 64, 16 sweeps beside each" + who, 64, 16, some});
     arrangements.push_back({"sequential" + who, 0, 0, some});
   }
-  Runs runs(session, scene_of(settings), cube(settings));
+  Runs runs(session, filled_cube(settings), cube_overrides(settings));
   for (const Arrangement& a : arrangements) {
     runs.add([&a](Scene& scene) {
       MarchSettings& march = scene.solver.march;
@@ -89,7 +77,7 @@ Experiment concurrent_or_not(cl::Session& session, const BenchSettings& settings
     e.rows.push_back({1e3 * s.median, 1e3 * s.min, 1e3 * s.max, 1e3 * run.stage("march").median,
                       1e3 * run.stage("diffuse").median, static_cast<double>(run.solution().report.iterations),
                       s.median / sequential.seconds().median, run.cores_busy(cores),
-                      relative_difference(run.fluence(), sequential.fluence())});
+                      relative_l2(run.fluence(), sequential.fluence())});
     if (arrangements[i].sweeps > 0 && e.rows[i][6] < e.rows[best][6]) best = i;
   }
   const double ratio = e.rows[best][6], busy = e.rows[0][7];
@@ -127,14 +115,14 @@ Experiment frames_at_once(cl::Session& session, const BenchSettings& settings) {
       .labels = {"one after the other", "at once"}};
   const cl::DeviceInfo& device = session.device();
   cl::Session other(cl::choose_device(figures("%d:%d", device.platform_index, device.device_index)));
-  SceneOverrides overrides = cube(settings);
+  SceneOverrides overrides = cube_overrides(settings);
   overrides.solver = "steady";
-  LightRun a(session, scene_of(settings), overrides);
+  LightRun a(session, filled_cube(settings), overrides);
   LightRun b(other, a, [](Scene&) {});
   std::vector<double> seconds[2], busy[2];
   for (int i = 0; i <= settings.repeats(); ++i) {
     for (const int at_once : {0, 1}) {
-      const std::clock_t processor = std::clock();
+      const double processor = processor_time();
       const double started = wall_time();
       if (at_once) {
         std::thread second([&] { b.once(true, false); });
@@ -147,7 +135,7 @@ Experiment frames_at_once(cl::Session& session, const BenchSettings& settings) {
       const double wall = wall_time() - started;
       if (i == 0) continue;
       seconds[at_once].push_back(wall);
-      busy[at_once].push_back(static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC / (wall * cores));
+      busy[at_once].push_back((processor_time() - processor) / (wall * cores));
     }
   }
   for (const int k : {0, 1}) {

@@ -2,10 +2,6 @@
 // See light_run.h.
 #include "host/bench/light_run.h"
 
-#include <ctime>
-
-#include "host/study/error_measures.h"
-
 namespace turbid {
 
 LightRun::LightRun(cl::Session& session, const std::string& scene_file, const SceneOverrides& overrides,
@@ -16,18 +12,20 @@ LightRun::LightRun(cl::Session& session, const std::string& scene_file, const Sc
   prepared_ = std::make_unique<PreparedScene>(session, *scene_, *progress_);
 }
 
-LightRun::LightRun(cl::Session& session, const LightRun& like, const std::function<void(Scene&)>& change) {
+LightRun::LightRun(cl::Session& session, const LightRun& like, const std::function<void(Scene&)>& change,
+                   const std::function<SceneFeatures(SceneFeatures)>& features_of) {
   Scene scene = like.scene_->scene;
-  change(scene);
+  if (change) change(scene);
   MediumVolume medium = revoxelise(like.scene_->medium, like.scene_->scene.medium, scene.medium);
-  const SceneFeatures features = scene_features(medium, scene.lights);
+  SceneFeatures features = scene_features(medium, scene.lights);
+  if (features_of) features = features_of(features);
   scene_ = std::make_unique<SceneOnGrid>(SceneOnGrid{std::move(scene), std::move(medium), features});
   prepared_ = std::make_unique<PreparedScene>(session, *scene_, *progress_);
 }
 
 void LightRun::once(bool picture, bool keep) {
   const std::size_t before = progress_->times().size();
-  const std::clock_t processor = std::clock();
+  const double processor = processor_time();
   const double started = wall_time();
   solution_ = prepared_->light();
   const double lit = wall_time();
@@ -36,7 +34,7 @@ void LightRun::once(bool picture, bool keep) {
   if (!keep) return;
   seconds_.push_back(lit - started);
   view_.push_back(ended - lit);
-  processor_.push_back(static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC);
+  processor_.push_back(processor_time() - processor);
   stages_.emplace_back(progress_->times().begin() + static_cast<std::ptrdiff_t>(before), progress_->times().end());
 }
 
@@ -90,10 +88,6 @@ void run_interleaved(const std::vector<LightRun*>& runs, int repeats, bool pictu
     for (LightRun* run : runs)
       if (i > 0 || !run->timed() || wall_time() - started < most_seconds) run->once(picture, true);
   }
-}
-
-double relative_difference(const std::vector<float>& a, const std::vector<float>& b) {
-  return measure_errors(a, b).rel_l2;
 }
 
 }  // namespace turbid

@@ -18,8 +18,9 @@ class LightRun {
   LightRun(cl::Session&, const std::string& scene_file, const SceneOverrides&,
            const std::function<void(Scene&)>& change = {});
   /// The same voxels as `like`, shared with it, under other settings: `change` may alter the solver, lights and camera
-  /// only.
-  LightRun(cl::Session&, const LightRun& like, const std::function<void(Scene&)>& change);
+  /// only; `features_of` may ask for more physics than the scene needs.
+  LightRun(cl::Session&, const LightRun& like, const std::function<void(Scene&)>& change,
+           const std::function<SceneFeatures(SceneFeatures)>& features_of = {});
 
   /// One light(), and a picture if asked for; its times are kept if `keep`.
   void once(bool picture, bool keep);
@@ -69,8 +70,5 @@ class Runs {
 /// One run of each to warm up, then `repeats` rounds of all in turn, but no further round once `most_seconds` have
 /// passed and each was timed once.
 void run_interleaved(const std::vector<LightRun*>&, int repeats, bool picture, double most_seconds = 1e9);
-
-/// sqrt(sum (a - b)^2 / sum b^2).
-double relative_difference(const std::vector<float>& a, const std::vector<float>& b);
 
 }  // namespace turbid

@@ -11,6 +11,7 @@
 #include "host/bench/measure_blocks.h"
 #include "host/profile/ceilings.h"
 #include "host/profile/spread.h"
+#include "host/study/error_measures.h"
 #include "host/transport/lattice_scheme.h"
 #include "host/transport/steady.h"
 
@@ -23,15 +24,6 @@ LatticeSettings global_lattice() {
   LatticeSettings settings;
   settings.block_edge = 0;
   return settings;
-}
-
-double relative_l2(const std::vector<float>& got, const std::vector<float>& exact) {
-  double difference = 0, norm = 0;
-  for (std::size_t i = 0; i < exact.size(); ++i) {
-    difference += std::pow(static_cast<double>(got[i]) - exact[i], 2);
-    norm += std::pow(static_cast<double>(exact[i]), 2);
-  }
-  return std::sqrt(difference / norm);
 }
 
 /// 160 bytes per voxel and step of three colours (performance notes): populations read and written, and the source.

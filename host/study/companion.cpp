@@ -170,18 +170,4 @@ std::vector<std::vector<float>> interpolated_values(const SampledFluence& coarse
   return values;
 }
 
-double relative_l2(const std::vector<float>& a, const std::vector<float>& b) {
-  double difference = 0, size = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double d = double(a[i]) - double(b[i]);
-    difference += d * d;
-    size += double(b[i]) * double(b[i]);
-  }
-  return difference == 0 ? 0 : std::sqrt(difference / size);
-}
-
-double root_relmse(const std::vector<float>& a, const std::vector<float>& b) {
-  return std::sqrt(measure_errors(a, b).relmse);
-}
-
 }  // namespace turbid

@@ -39,10 +39,4 @@ std::vector<std::vector<float>> common_values(const SampledFluence& coarse,
 std::vector<std::vector<float>> interpolated_values(const SampledFluence& coarse,
                                                     const std::vector<const SampledFluence*>& fine);
 
-/// sqrt(sum (a - b)^2 / sum b^2); 0 / 0 is 0.
-double relative_l2(const std::vector<float>& a, const std::vector<float>& b);
-/// Root of `turbid compare`'s relMSE: sqrt(mean (a - b)^2 / (b^2 + (0.1 mean |b|)^2)), how far off a pixel is, relative
-/// to itself. Unlike relative_l2 it is not ruled by a few bright pixels.
-double root_relmse(const std::vector<float>& a, const std::vector<float>& b);
-
 }  // namespace turbid

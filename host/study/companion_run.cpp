@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/study/error_measures.h"
 #include "host/study/photon_reference.h"
 
 namespace turbid {

@@ -75,6 +75,20 @@ ErrorMeasures measure_errors(std::span<const float> a, std::span<const float> b,
   return m;
 }
 
+double relative_l2(std::span<const float> a, std::span<const float> b) {
+  double difference = 0, size = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double d = double(a[i]) - double(b[i]);
+    difference += d * d;
+    size += double(b[i]) * double(b[i]);
+  }
+  return difference == 0 ? 0 : std::sqrt(difference / size);
+}
+
+double root_relmse(std::span<const float> a, std::span<const float> b) {
+  return std::sqrt(measure_errors(a, b).relmse);
+}
+
 const std::vector<Measure>& measures() {
   static const std::vector<Measure> all{
       {"mae", "mean |a - b|", {}},

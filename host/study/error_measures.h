@@ -41,6 +41,12 @@ struct ErrorMeasures {
 /// The spans have one length.
 ErrorMeasures measure_errors(std::span<const float> a, std::span<const float> b, const MeasureSettings& = {});
 
+/// sqrt(sum (a - b)^2 / sum b^2); 0 / 0 is 0; not a number if any value is none, unlike measure_errors.
+double relative_l2(std::span<const float> a, std::span<const float> b);
+/// Root of `turbid compare`'s relMSE: sqrt(mean (a - b)^2 / (b^2 + (0.1 mean |b|)^2)), how far off a pixel is, relative
+/// to itself. Unlike relative_l2 it is not ruled by a few bright pixels.
+double root_relmse(std::span<const float> a, std::span<const float> b);
+
 /// A measure by its name on the command line and in reports.
 struct Measure {
   std::string name;

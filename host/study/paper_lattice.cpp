@@ -8,6 +8,7 @@
 #include "host/study/case.h"
 #include "host/study/dense_diffusion.h"
 #include "host/study/diffusion_runs.h"
+#include "host/study/error_measures.h"
 #include "host/study/paper_scheme.h"
 #include "host/study/printed_lattice.h"
 #include "host/transport/lattice.h"
@@ -62,15 +63,6 @@ std::string engine_answer(CaseContext& context, double s) {
   } catch (const InputError&) {
     return "refused: the collision diverges";
   }
-}
-
-double relative_l2(const std::vector<float>& found, const std::vector<float>& exact) {
-  double difference = 0, norm = 0;
-  for (std::size_t i = 0; i < exact.size(); ++i) {
-    difference += std::pow(static_cast<double>(found[i]) - static_cast<double>(exact[i]), 2);
-    norm += std::pow(static_cast<double>(exact[i]), 2);
-  }
-  return std::sqrt(difference / norm);
 }
 
 LatticeSettings plain_steps(CollisionVariant variant, float tolerance = 1e-4f) {

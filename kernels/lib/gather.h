@@ -46,9 +46,7 @@ static ALWAYS_INLINE Colours sources_at(const global float* source_tiles, const 
   LANE_ARRAY float source[LANES];
   for (int i = 0; i < LANES; ++i) {
     const global float* at = source_tiles + node[i];
-    const float2 row = strides->rows[0][i] * vload2(0, at) + strides->rows[1][i] * vload2(0, at + TURBID_TILE_EDGE) +
-                       strides->rows[2][i] * vload2(0, at + TURBID_TILE_EDGE * TURBID_TILE_EDGE) +
-                       strides->rows[3][i] * vload2(0, at + TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1));
+    const float2 row = WEIGH_ROWS(vload2, 1, at, &strides->rows[0][i], LANES);
     source[i] = row.x + strides->fraction[0][i] * (row.y - row.x);
   }
   return (Colours){{LOAD(source)}};

@@ -81,11 +81,15 @@ static float3 slope4(const global float* tiles, int tile, Cell cell) {
                   along_z.x + cell.fraction.x * (along_z.y - along_z.x));
 }
 
-// The same by the weights of the four rows of corners and of the corners farther along x.
+// Pairs of nodes of `width` values at a cell's four rows along x, which LOAD reads, by the rows' weights.
+#define WEIGH_ROWS(LOAD, width, at, rows, stride)                                                       \
+  ((rows)[0] * LOAD(0, at) + (rows)[stride] * LOAD(0, (at) + (width) * TURBID_TILE_EDGE) +              \
+   (rows)[2 * (stride)] * LOAD(0, (at) + (width) * TURBID_TILE_EDGE * TURBID_TILE_EDGE) +               \
+   (rows)[3 * (stride)] * LOAD(0, (at) + (width) * TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1)))
+
+// interpolate4 by the weights of the four rows of corners and of the corners farther along x.
 static ALWAYS_INLINE float4 weigh4(const global float* at, const float* rows, int stride, float x) {
-  const float8 row = rows[0] * vload8(0, at) + rows[stride] * vload8(0, at + 4 * TURBID_TILE_EDGE) +
-                     rows[2 * stride] * vload8(0, at + 4 * TURBID_TILE_EDGE * TURBID_TILE_EDGE) +
-                     rows[3 * stride] * vload8(0, at + 4 * TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1));
+  const float8 row = WEIGH_ROWS(vload8, 4, at, rows, stride);
   return row.lo + x * (row.hi - row.lo);
 }
 
@@ -191,16 +195,12 @@ static Extinction extinction_in(const Medium* medium, int region, int tile, Cell
 // (sigma_s, sigma_a) of nodes by weights, see weigh4.
 #if TURBID_CHANNELS == 3
 static ALWAYS_INLINE float8 coefficients_of(const global float* at, const float* rows, int stride, float x) {
-  const float16 row = rows[0] * vload16(0, at) + rows[stride] * vload16(0, at + 8 * TURBID_TILE_EDGE) +
-                      rows[2 * stride] * vload16(0, at + 8 * TURBID_TILE_EDGE * TURBID_TILE_EDGE) +
-                      rows[3 * stride] * vload16(0, at + 8 * TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1));
+  const float16 row = WEIGH_ROWS(vload16, 8, at, rows, stride);
   return row.lo + x * (row.hi - row.lo);
 }
 #else
 static ALWAYS_INLINE float2 coefficients_of(const global float* at, const float* rows, int stride, float x) {
-  const float4 row = rows[0] * vload4(0, at) + rows[stride] * vload4(0, at + 2 * TURBID_TILE_EDGE) +
-                     rows[2 * stride] * vload4(0, at + 2 * TURBID_TILE_EDGE * TURBID_TILE_EDGE) +
-                     rows[3 * stride] * vload4(0, at + 2 * TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1));
+  const float4 row = WEIGH_ROWS(vload4, 2, at, rows, stride);
   return row.lo + x * (row.hi - row.lo);
 }
 #endif

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <cstdio>
 #include <filesystem>
+#include <numbers>
 
 #include "host/study/energy_media.h"
+#include "host/study/error_measures.h"
 #include "tests/support/test_media.h"
 #include "volumes/solid.h"
 
@@ -41,13 +42,6 @@ TEST(EnergyBalance, EmissionIsTheVolumeTimesItsDensityPerColour) {
   }
 }
 
-double relative_difference(const std::vector<float>& a, const std::vector<float>& b) {
-  double difference = 0, norm = 0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    difference += std::pow(static_cast<double>(a[i]) - b[i], 2), norm += static_cast<double>(b[i]) * b[i];
-  return std::sqrt(difference / norm);
-}
-
 TEST(Emission, OfABallIsThatOfItsVolume) {
   // Sampled distances are 1 / (6 R) voxels too large on average on a ball of R voxels: its volume falls short by 1 / (2 R^2).
   // Whole voxels, counted where their centres lie inside, are up to 5 % off in these places.
@@ -75,7 +69,7 @@ TEST(Solvers, SteadyAndLatticeAgreeToTheirTolerance) {
     settings.solver = "lattice";
     const test::Run lattice = test::run(c.scene, c.lights, settings);
     EXPECT_LT(lattice.solution.report.error_estimate, 1e-4) << c.name;
-    EXPECT_LT(relative_difference(lattice.solution.volume.fluence, steady.solution.volume.fluence), 3e-4)
+    EXPECT_LT(relative_l2(lattice.solution.volume.fluence, steady.solution.volume.fluence), 3e-4)
         << c.name;  // 1e-4 each, in two norms
     for (int colour = 0; colour < 3; ++colour)
       EXPECT_NEAR(lattice.energy().escaped[colour] / steady.energy().escaped[colour], 1, 3e-4) << c.name;
@@ -104,7 +98,7 @@ TEST(Solvers, AWarmStartAnswersLikeAColdOneAndKeepsTheBalance) {
     const LightSolution same = solver->light(c.lights), warm = solver->light(moved);
     EXPECT_LE(same.report.iterations, name == std::string("steady") ? 1 : first.report.iterations / 4) << name;
     EXPECT_LT(warm.report.iterations, cold.report.iterations) << name;
-    EXPECT_LT(relative_difference(warm.volume.fluence, cold.volume.fluence), 3e-4) << name;  // 1e-4 each, in two norms
+    EXPECT_LT(relative_l2(warm.volume.fluence, cold.volume.fluence), 3e-4) << name;  // 1e-4 each, in two norms
     EXPECT_LT(warm.report.energy.imbalance(), 1e-5) << name;
     EXPECT_LT(same.report.energy.imbalance(), 1e-5) << name;
     solver->set_warm_start(false);

@@ -13,9 +13,9 @@ static ALWAYS_INLINE Colour source_in(const global float* source_tiles, int tile
     return interpolate4(source_tiles, tile, cell);
 #else
     const global float* at = source_tiles + (size_t)tile * TURBID_TILE_NODES + cell.node;
-    const float2 a = vload2(0, at), b = vload2(0, at + TURBID_TILE_EDGE);
-    const float2 c = vload2(0, at + TURBID_TILE_EDGE * TURBID_TILE_EDGE);
-    const float2 d = vload2(0, at + TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1));
+    const float2 a = load2(at), b = load2(at + TURBID_TILE_EDGE);
+    const float2 c = load2(at + TURBID_TILE_EDGE * TURBID_TILE_EDGE);
+    const float2 d = load2(at + TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1));
     const float2 row = mix(mix(a, b, cell.fraction.y), mix(c, d, cell.fraction.y), cell.fraction.z);
     return mix(row.x, row.y, cell.fraction.x);
 #endif
@@ -38,7 +38,7 @@ static ALWAYS_INLINE Colours sources_at(const global float* source_tiles, const 
   STORE(strides->source_at + LOAD(strides->node), node);
 #if TURBID_CHANNELS == 3
   Quads source[LANE_QUADS];
-#define SOURCE(lane) value_at(source_tiles, node[lane], strides, lane)
+#define SOURCE(lane) VALUE_AT(source_tiles, node[lane], strides, lane)
   COLLECT(source, SOURCE);
 #undef SOURCE
   return (Colours){{COMPONENT0(Floats, source), COMPONENT1(Floats, source), COMPONENT2(Floats, source)}};
@@ -46,7 +46,7 @@ static ALWAYS_INLINE Colours sources_at(const global float* source_tiles, const 
   LANE_ARRAY float source[LANES];
   for (int i = 0; i < LANES; ++i) {
     const global float* at = source_tiles + node[i];
-    const float2 row = WEIGH_ROWS(vload2, 1, at, &strides->rows[0][i], LANES);
+    const float2 row = WEIGH_ROWS(load2, 1, at, &strides->rows[0][i], LANES);
     source[i] = row.x + strides->fraction[0][i] * (row.y - row.x);
   }
   return (Colours){{LOAD(source)}};

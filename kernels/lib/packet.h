@@ -86,9 +86,8 @@ static ALWAYS_INLINE Cell cell_of(const Strides* strides, int lane) {
 }
 
 // Trilinear value of four-wide nodes at a lane's point, `node` of the tiles being its cell's lowest corner.
-static ALWAYS_INLINE float4 value_at(const global float* tiles, int node, const Strides* strides, int lane) {
-  return weigh4(tiles + 4 * node, &strides->rows[0][lane], LANES, strides->fraction[0][lane]);
-}
+#define VALUE_AT(tiles, node, strides, lane) \
+  weigh4((tiles) + 4 * (node), &(strides)->rows[0][lane], LANES, (strides)->fraction[0][lane])
 
 // One step of the rays in `wanted`; the mask of those that did it. `ground`: none is to pass this height in the ambient.
 // region_tiles[region][block]: tiles of index, coefficients and source (< 0: none), and the one region of the block.
@@ -125,10 +124,10 @@ static ALWAYS_INLINE Ints glide(const Medium* medium, const global int4* region_
   LANE_ARRAY int node[LANES];
   STORE(TURBID_TILE_NODES * not_negative(index_tile) + cells.node, node);
   Quads force[LANE_QUADS];
-#define FORCE(lane) value_at(medium->index_tiles, node[lane], strides, lane)
+#define FORCE(lane) VALUE_AT(medium->index_tiles, node[lane], strides, lane)
   COLLECT(force, FORCE);
 #undef FORCE
-  v = along(v, no_index ? (Floats)(0.0f) : dtau,
+  v = along(v, no_index ? (Floats)(0.0f) : dtau * INDEX_UNIT,
             (Points){COMPONENT0(Floats, force), COMPONENT1(Floats, force), COMPONENT2(Floats, force)});
   const Points mean = {0.5f * (v_before.x + v.x), 0.5f * (v_before.y + v.y), 0.5f * (v_before.z + v.z)};
   strides->eta_squared = squared_length(mean);

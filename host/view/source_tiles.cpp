@@ -3,6 +3,7 @@
 #include "host/view/source_tiles.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "host/base/parallel.h"
@@ -10,14 +11,17 @@
 namespace turbid {
 namespace {
 
-constexpr int kHalo = 3;                             // voxels known around a tile
-constexpr int kPatch = TURBID_TILE_EDGE + 2 * kHalo;  // edge of a patch
+constexpr int kHalo = 3;  // voxels known around a tile
+// Edge of a patch; the outermost voxels are never known, so that looking two voxels on needs no test of bounds.
+constexpr int kRim = kHalo + 1, kPatch = TURBID_TILE_EDGE + 2 * kRim;
 constexpr int kPatchVoxels = kPatch * kPatch * kPatch;
 
 struct Patch {
   std::vector<glm::vec3> value = std::vector<glm::vec3>(kPatchVoxels);
   std::vector<char> known = std::vector<char>(kPatchVoxels);
-  static int index(int x, int y, int z) { return x + kPatch * (y + kPatch * z); }
+  std::vector<std::pair<int, glm::vec3>> found;
+  /// Of node (x, y, z) of the tile.
+  static int index(int x, int y, int z) { return x + kRim + kPatch * (y + kRim + kPatch * (z + kRim)); }
 };
 
 /// The source of every active voxel, and whose it is: [block][voxel].
@@ -58,65 +62,78 @@ VoxelSources voxel_sources(const FluenceVolume& volume, const MediumVolume& medi
   return sources;
 }
 
-/// Values of a region's own voxels around a tile.
-void load(Patch& patch, const SourceTile& tile, const BlockGrid& grid, const VoxelSources& sources) {
+/// Values of a region's own voxels in a tile and `halo` voxels around it; whether all of them are known.
+bool load(Patch& patch, int halo, const SourceTile& tile, const BlockGrid& grid, const VoxelSources& sources) {
   int blocks[27];
   for (int k = 0; k < 27; ++k) blocks[k] = grid.find(tile.block + glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1);
-  for (int z = 0, i = 0; z < kPatch; ++z) {
-    const int vz = z - kHalo + 8;  // from the first of the 27 blocks
-    for (int y = 0; y < kPatch; ++y) {
-      const int vy = y - kHalo + 8;
-      for (int x = 0; x < kPatch; ++x, ++i) {
-        const int vx = x - kHalo + 8, block = blocks[vx / 8 + 3 * (vy / 8) + 9 * (vz / 8)];
-        const std::size_t at = std::max(block, 0) * std::size_t{512} + vx % 8 + 8 * (vy % 8 + 8 * (vz % 8));
+  bool all = true;
+  for (int z = -halo; z < TURBID_TILE_EDGE + halo; ++z) {
+    const int vz = z + 8;  // from the first of the 27 blocks
+    for (int y = -halo; y < TURBID_TILE_EDGE + halo; ++y) {
+      const int vy = y + 8, row = 8 * (vy % 8 + 8 * (vz % 8));
+      for (int x = -halo, i = Patch::index(x, y, z); x < TURBID_TILE_EDGE + halo; ++x, ++i) {
+        const int vx = x + 8, block = blocks[vx / 8 + 3 * (vy / 8) + 9 * (vz / 8)];
+        const std::size_t at = std::max(block, 0) * std::size_t{512} + vx % 8 + row;
         patch.known[i] = block >= 0 && sources.region[at] == tile.region;
-        if (patch.known[i]) patch.value[i] = sources.value[at];
+        if (patch.known[i])
+          patch.value[i] = sources.value[at];
+        else
+          all = false;
       }
     }
   }
+  return all;
+}
+
+/// The 26 directions to a neighbour, in the order of their sums: how far on it lies in a patch, and its weight.
+struct Neighbour {
+  int step;
+  float weight;
+};
+std::array<Neighbour, 26> neighbours() {
+  std::array<Neighbour, 26> all;
+  int k = 0;
+  for (int dz = -1; dz <= 1; ++dz)
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx)
+        if (const int squared = dx * dx + dy * dy + dz * dz)
+          all[k++] = {dx + kPatch * (dy + kPatch * dz), 1.0f / static_cast<float>(squared)};
+  return all;
 }
 
 /// One round: every unknown voxel next to known ones continues their trend, a * (a / b) for values b, a on the way to it,
-/// held between a / 2 and 2 a; averaged over the directions that have it, nearer ones heavier. The outermost `margin` voxels
-/// are left out.
-void extrapolate(Patch& patch, int margin) {
-  std::vector<std::pair<int, glm::vec3>> found;
-  for (int z = margin; z < kPatch - margin; ++z) {
-    for (int y = margin; y < kPatch - margin; ++y) {
-      for (int x = margin; x < kPatch - margin; ++x) {
-        const int here = Patch::index(x, y, z);
+/// held between a / 2 and 2 a; averaged over the directions that have it, nearer ones heavier. The tile and `halo` voxels
+/// around it.
+void extrapolate(Patch& patch, int halo) {
+  static const std::array<Neighbour, 26> all = neighbours();
+  patch.found.clear();
+  for (int z = -halo; z < TURBID_TILE_EDGE + halo; ++z) {
+    for (int y = -halo; y < TURBID_TILE_EDGE + halo; ++y) {
+      for (int x = -halo, here = Patch::index(x, y, z); x < TURBID_TILE_EDGE + halo; ++x, ++here) {
         if (patch.known[here]) continue;
         glm::vec3 sum(0);
         float weights = 0;
-        for (int dz = -1; dz <= 1; ++dz) {
-          for (int dy = -1; dy <= 1; ++dy) {
-            for (int dx = -1; dx <= 1; ++dx) {
-              const int x1 = x + dx, y1 = y + dy, z1 = z + dz;
-              if (std::min({x1, y1, z1}) < 0 || std::max({x1, y1, z1}) >= kPatch) continue;
-              const int first = Patch::index(x1, y1, z1);
-              if (!patch.known[first]) continue;
-              const glm::vec3 a = patch.value[first];
-              const int x2 = x1 + dx, y2 = y1 + dy, z2 = z1 + dz;
-              float weight = 1.0f / static_cast<float>(dx * dx + dy * dy + dz * dz);
-              glm::vec3 guess = a;
-              if (std::min({x2, y2, z2}) >= 0 && std::max({x2, y2, z2}) < kPatch && patch.known[Patch::index(x2, y2, z2)]) {
-                const glm::vec3 b = patch.value[Patch::index(x2, y2, z2)];
-                for (int c = 0; c < 3; ++c) {
-                  if (b[c] > 0) guess[c] = std::clamp(a[c] * (a[c] / b[c]), 0.5f * a[c], 2.0f * a[c]);
-                }
-              } else {
-                weight *= 0.1f;  // no trend known along this direction
-              }
-              sum += weight * guess;
-              weights += weight;
+        for (const Neighbour& n : all) {
+          const int first = here + n.step, second = first + n.step;
+          if (!patch.known[first]) continue;
+          const glm::vec3 a = patch.value[first];
+          if (patch.known[second]) {
+            const glm::vec3 b = patch.value[second];
+            for (int c = 0; c < 3; ++c) {
+              const float guess = b[c] > 0 ? std::clamp(a[c] * (a[c] / b[c]), 0.5f * a[c], 2.0f * a[c]) : a[c];
+              sum[c] += n.weight * guess;
             }
+            weights += n.weight;
+          } else {
+            sum += 0.1f * n.weight * a;  // no trend known along this direction
+            weights += 0.1f * n.weight;
           }
         }
-        if (weights > 0) found.emplace_back(here, sum / weights);
+        if (weights > 0) patch.found.emplace_back(here, sum / weights);
       }
     }
   }
-  for (const auto& [index, value] : found) {
+  for (const auto& [index, value] : patch.found) {
     patch.value[index] = value;
     patch.known[index] = 1;
   }
@@ -132,16 +149,16 @@ std::vector<float> make_source_tiles(const FluenceVolume& volume, const MediumVo
   parallel_ranges(static_cast<int>(device.source_tiles.size()), [&](int begin, int end) {
     Patch patch;
     for (int tile = begin; tile < end; ++tile) {
-      load(patch, device.source_tiles[tile], volume.blocks, sources);
-      if (std::find(patch.known.begin(), patch.known.end(), 0) != patch.known.end()) {
-        extrapolate(patch, kHalo - 2);  // as far as the second round looks
-        extrapolate(patch, kHalo);
+      if (!load(patch, 0, device.source_tiles[tile], volume.blocks, sources)) {
+        load(patch, kHalo, device.source_tiles[tile], volume.blocks, sources);
+        extrapolate(patch, 2);  // as far as the second round looks
+        extrapolate(patch, 0);
       }
       float* out = tiles.data() + static_cast<std::size_t>(tile) * TURBID_TILE_NODES * width;
       for (int z = 0; z < TURBID_TILE_EDGE; ++z) {
         for (int y = 0; y < TURBID_TILE_EDGE; ++y) {
           for (int x = 0; x < TURBID_TILE_EDGE; ++x, out += width) {
-            const int at = Patch::index(x + kHalo, y + kHalo, z + kHalo);
+            const int at = Patch::index(x, y, z);
             const glm::vec3 value = patch.known[at] ? patch.value[at] : glm::vec3(0);
             if (channels == 3) {
               for (int c = 0; c < 3; ++c) out[c] = value[c];

@@ -70,37 +70,33 @@ kernel void march(MEDIUM_ARGUMENTS, const global int4* region_tiles, MarchParams
   Path paths[LANES];
   Hot hot;
   Claim claim = {0, 0};
-  LANE_ARRAY int done[LANES];
   for (int i = 0; i < LANES; ++i) {
     paths[i].index = -1;
-    done[i] = 0;
     clear_lane(&hot.rays, i);
     begin_next(paths + i, &claim, &medium, &sinks, &p, rays, claims);
-    put_path(&hot, i, paths + i, &medium, p.step);
+    put_path(&hot, i, paths + i, &medium, &p);
   }
-  while (true) {
-    const Ints alive = MASK(LOAD(hot.rays.region) >= 0);
-    if (!any_of(alive)) break;
-    const Ints rests = MASK(LOAD(hot.steps_left) == 0), wanted = alive & ~rests & MASK(LOAD(hot.steps) < p.max_steps);
-    STORE(LOAD(hot.steps) - wanted, hot.steps);  // a mask is -1
-    STORE(LOAD(hot.steps_left) + wanted, hot.steps_left);
-    STORE(LOAD(done) - wanted, done);
+  long done = 0;
+  Ints alive = MASK(LOAD(hot.rays.region) >= 0);
+  while (any_of(alive)) {
     Strides strides;
-    const Ints gone = glide(&medium, region_tiles, &hot.rays, wanted, p.step, p.ground, p.ground_height, &strides);
-    Ints apart = (Ints)(0);
-    if (any_of(gone & LOAD(hot.rays.participates))) apart = attenuate_all(&hot, &medium, region_tiles, &sinks, &p, &strides, gone);
-    const Ints waiting = (alive & ~gone) | apart;
-    if (!any_of(waiting)) continue;
-    LANE_ARRAY int waits[LANES], steps[LANES], attenuates[LANES];
+    Ints wanted, waiting, apart;
+    do {
+      wanted = MASK(LOAD(hot.steps_left) > 0);
+      STORE(LOAD(hot.steps_left) + wanted, hot.steps_left);  // a mask is -1
+      const Ints gone = glide(&medium, region_tiles, &hot.rays, alive, wanted, p.step, p.ground, p.ground_height, 0, &strides);
+      apart = (Ints)(0);
+      if (any_of(gone & LOAD(hot.rays.participates))) apart = attenuate_all(&hot, region_tiles, &sinks, &p, &strides, gone);
+      waiting = (alive & ~gone) | apart;
+    } while (!any_of(waiting));
+    LANE_ARRAY int steps[LANES], attenuates[LANES];
     LANE_ARRAY float length[LANES];
-    STORE(waiting, waits);
     STORE(wanted, steps);
     STORE(apart, attenuates);
     STORE(strides.length, length);
-    for (int i = 0; i < LANES; ++i) {
-      if (!waits[i]) continue;
+    FOR_LANES(i, waiting) {
       Path* path = paths + i;
-      take_path(&hot, i, path);
+      done += take_path(&hot, i, path);
       if (attenuates[i]) {
         const Cell cell = cell_of(&strides, i);
         const int set = medium.regions[path->ray.region].source_set;
@@ -115,15 +111,11 @@ kernel void march(MEDIUM_ARGUMENTS, const global int4* region_tiles, MarchParams
         end_path(path, &sinks, &p, none());
       }
       begin_next(path, &claim, &medium, &sinks, &p, rays, claims);
-      put_path(&hot, i, path, &medium, p.step);
+      put_path(&hot, i, path, &medium, &p);
     }
+    alive = MASK(LOAD(hot.rays.region) >= 0);
   }
-  long steps = 0;
-  for (int i = 0; i < LANES; ++i) steps += done[i];
-  global long* work = tallies + 3 * TURBID_TALLY_WORK;
-  add_count(work, steps);
-  add_count(work + 1, sinks.deposits);
-  add_count(work + 2, sinks.interfaces);
+  add_tallies(&sinks, done);
 }
 
 // Adds the work-items' own sums up: own[volume][node][OWN_WIDTH] to deposit[node][channel]. One work-item per node.

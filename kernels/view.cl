@@ -238,24 +238,24 @@ kernel void view(MEDIUM_ARGUMENTS, const global int4* region_tiles, ViewParams p
     begin_next(paths + i, &claim, &medium, &around, &p, samples, claims, radiance);
     put_path(&hot, i, paths + i, &medium, p.step);
   }
-  while (true) {
-    const Ints alive = MASK(LOAD(hot.rays.region) >= 0);
-    if (!any_of(alive)) break;
-    const Ints wanted = alive & MASK(LOAD(hot.steps) < p.max_steps);
-    STORE(LOAD(hot.steps) - wanted, hot.steps);  // a mask is -1
+  Ints alive = MASK(LOAD(hot.rays.region) >= 0);
+  while (any_of(alive)) {
     Strides strides;
-    const Ints gone = glide(&medium, region_tiles, &hot.rays, wanted, p.step, p.ground, p.ground_height, &strides);
-    Ints ended = alive & ~wanted;
-    if (any_of(gone & LOAD(hot.rays.participates))) {
-      ended |= gather_all(&medium, &hot.rays, &strides, gone, source_tiles, p.min_weight, hot.gathered[0], hot.weight[0]);
-    }
-    const Ints waiting = (alive & ~gone) | ended;
-    if (!any_of(waiting)) continue;
-    LANE_ARRAY int waits[LANES], ends[LANES];
-    STORE(waiting, waits);
+    Ints ended, waiting;
+    do {
+      const Ints wanted = alive & MASK(LOAD(hot.steps) < p.max_steps);
+      STORE(LOAD(hot.steps) - wanted, hot.steps);  // a mask is -1
+      const Ints gone =
+          glide(&medium, region_tiles, &hot.rays, alive, wanted, p.step, p.ground, p.ground_height, source_tiles, &strides);
+      ended = alive & ~wanted;
+      if (any_of(gone & LOAD(hot.rays.participates))) {
+        ended |= gather_all(&hot.rays, &strides, gone, p.min_weight, hot.gathered[0], hot.weight[0]);
+      }
+      waiting = (alive & ~gone) | ended;
+    } while (!any_of(waiting));
+    LANE_ARRAY int ends[LANES];
     STORE(ended, ends);
-    for (int i = 0; i < LANES; ++i) {
-      if (!waits[i]) continue;
+    FOR_LANES(i, waiting) {
       Path* path = paths + i;
       take_path(&hot, i, path);
       if (ends[i] || !step_with_care(path, &medium, &around, &p, source_tiles)) {
@@ -264,5 +264,6 @@ kernel void view(MEDIUM_ARGUMENTS, const global int4* region_tiles, ViewParams p
       }
       put_path(&hot, i, path, &medium, p.step);
     }
+    alive = MASK(LOAD(hot.rays.region) >= 0);
   }
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kRaysPerLaunch = 1 << 14;  // Ctrl-C is answered between launches
 // Where the loop shape is a CPU's: rays that a work-item interleaves, and rays that it takes at a time.
-constexpr int kInterleave = 16, kRaysPerClaim = 64;
+constexpr int kInterleave = 32, kRaysPerClaim = 64;
 constexpr std::size_t kOwnSumsShare = 8;  // of the device's memory, at the most, goes to work-items' own sums
 constexpr int kGroundTexels = 768;     // at the most, per side
 constexpr float kGroundReach = 3.0f;  // the collecting map spans this many domain sizes

@@ -20,7 +20,7 @@ namespace turbid {
 namespace {
 
 constexpr int kSamplesPerLaunch = 1 << 16;  // Ctrl-C is answered between launches
-constexpr int kInterleave = 16, kSamplesPerClaim = 64;  // of a CPU's work-item; a GPU's takes one sample
+constexpr int kInterleave = 32, kSamplesPerClaim = 64;  // of a CPU's work-item; a GPU's takes one sample
 
 int kind_of(const Light& light) {
   return light.kind == LightKind::directional ? TURBID_LIGHT_DIRECTIONAL

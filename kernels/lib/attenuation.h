@@ -10,6 +10,10 @@
   (1.0f - (x) * (0.5f - (x) * (1.0f / 6.0f - (x) * (1.0f / 24.0f - (x) * (1.0f / 120.0f - (x) *               \
           (1.0f / 720.0f - (x) * (1.0f / 5040.0f - (x) * (1.0f / 40320.0f))))))))
 
+// The same up to a depth of THIN_DEPTH, to half a unit in the last place.
+#define THIN_DEPTH 0.05f
+#define THIN_MEAN_TRANSMITTANCE(x) (1.0f - (x) * (0.5f - (x) * (1.0f / 6.0f - (x) * (1.0f / 24.0f))))
+
 static ALWAYS_INLINE Colour mean_transmittance(Colour depth) {
   Colour mean = MEAN_TRANSMITTANCE_SERIES(depth);
   if (colour_max(depth) > 0.5f) mean = depth > 0.5f ? -expm1(-depth) / fmax(depth, 0.5f) : mean;

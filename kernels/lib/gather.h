@@ -32,32 +32,11 @@ static void gather(Colour* gathered, Colour* weight, Extinction sigma, Colour so
   *weight -= share * depth;
 }
 
-// Sources half way through the rays' steps.
-static ALWAYS_INLINE Colours sources_at(const global float* source_tiles, const Strides* strides) {
-  LANE_ARRAY int node[LANES];
-  STORE(strides->source_at + LOAD(strides->node), node);
-#if TURBID_CHANNELS == 3
-  Quads source[LANE_QUADS];
-#define SOURCE(lane) VALUE_AT(source_tiles, node[lane], strides, lane)
-  COLLECT(source, SOURCE);
-#undef SOURCE
-  return (Colours){{COMPONENT0(Floats, source), COMPONENT1(Floats, source), COMPONENT2(Floats, source)}};
-#else
-  LANE_ARRAY float source[LANES];
-  for (int i = 0; i < LANES; ++i) {
-    const global float* at = source_tiles + node[i];
-    const float2 row = WEIGH_ROWS(load2, 1, at, &strides->rows[0][i], LANES);
-    source[i] = row.x + strides->fraction[0][i] * (row.y - row.x);
-  }
-  return (Colours){{LOAD(source)}};
-#endif
-}
-
 // The same for the rays in `gone` of a packet; the mask of those whose weight has fallen below `min_weight`.
-static ALWAYS_INLINE Ints gather_all(const Medium* medium, const Packet* p, const Strides* strides, Ints gone,
-                                     const global float* source_tiles, float min_weight, float* gathered, float* weight) {
-  const Extinctions sigma = extinctions_at(medium, p, strides);
-  const Floats length = gone ? strides->length : (Floats)(0.0f);
+static ALWAYS_INLINE Ints gather_all(const Packet* p, const Strides* strides, Ints gone, float min_weight, float* gathered,
+                                     float* weight) {
+  const Extinctions sigma = extinctions_of(strides, p->sigma_s[0], p->sigma_a[0]);
+  const Floats length = strides->length;
   Colours depth, left = load_colours(weight), share;
   UNROLL
   for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
@@ -74,7 +53,7 @@ static ALWAYS_INLINE Ints gather_all(const Medium* medium, const Packet* p, cons
   store_colours(left, weight);
 #if TURBID_SCATTERING
   const Floats lit = strides->no_source ? (Floats)(0.0f) : length * (0.25f * M_1_PI_F) / strides->eta_squared;
-  const Colours source = sources_at(source_tiles, strides);
+  const Colours source = sources_of(strides);
   Colours sum = load_colours(gathered);
   UNROLL
   for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {

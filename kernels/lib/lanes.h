@@ -1,43 +1,66 @@
 // SPDX-License-Identifier: Apache-2.0
-// TURBID_INTERLEAVE rays that go in step, one per lane: 16 on CPUs, where every instruction then serves all of them; 1 on GPUs,
-// whose work-items are lanes already. What a packet keeps is a plain array per number, so that single lanes are easy to reach.
+// TURBID_INTERLEAVE rays that go in step, one per lane: 32 on CPUs, where every instruction then serves sixteen of them and two
+// such halves fill each other's waiting times; 1 on GPUs, whose work-items are lanes already. What a packet keeps is a plain
+// array per number, so that single lanes are easy to reach.
 #ifndef TURBID_LIB_LANES_H
 #define TURBID_LIB_LANES_H
 #include "lib/medium.h"
 
 #if !defined(TURBID_INTERLEAVE)
-#error "TURBID_INTERLEAVE (1 or 16: rays that a work-item follows in step) must be defined"
+#error "TURBID_INTERLEAVE (1 or 32: rays that a work-item follows in step) must be defined"
 #endif
 #define LANES TURBID_INTERLEAVE
 
 #define UNROLL _Pragma("unroll")
 
 // Masks are -1 where true.
-#if LANES == 16
-typedef float16 Floats;
-typedef int16 Ints;
-typedef float16 Quads;  // four numbers of four lanes
-typedef int16 QuadInts;
-// One 64-byte access each: a load that took up several narrower stores would wait for them to reach the cache.
-#define LANE_ARRAY __attribute__((aligned(64)))
+#if LANES == 32
+typedef float Floats __attribute__((ext_vector_type(32)));
+typedef int Ints __attribute__((ext_vector_type(32)));
+// Wide accesses: a load that took up several narrower stores would wait for them to reach the cache.
+#define LANE_ARRAY __attribute__((aligned(128)))
 static ALWAYS_INLINE Floats __attribute__((overloadable)) LOAD(const float* array) { return *(const Floats*)array; }
 static ALWAYS_INLINE Ints __attribute__((overloadable)) LOAD(const int* array) { return *(const Ints*)array; }
 static ALWAYS_INLINE void __attribute__((overloadable)) STORE(Floats value, float* array) { *(Floats*)array = value; }
 static ALWAYS_INLINE void __attribute__((overloadable)) STORE(Ints value, int* array) { *(Ints*)array = value; }
+// One lane's number, from memory: taking it out of a vector register costs more.
+#define LANE(array, lane) (((volatile const int*)(array))[lane])
 #define MASK(condition) (condition)
-#define TO_INTS(value) __builtin_convertvector(value, int16)
-#define TO_FLOATS(value) __builtin_convertvector(value, float16)
+#define TO_INTS(value) __builtin_convertvector(value, Ints)
+#define TO_FLOATS(value) __builtin_convertvector(value, Floats)
+#define JOIN(low, high)                                                                                                    \
+  __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, \
+                          24, 25, 26, 27, 28, 29, 30, 31)
+static ALWAYS_INLINE Floats square_root(Floats a) { return JOIN(sqrt(a.lo), sqrt(a.hi)); }
+static ALWAYS_INLINE Floats exponential_less_one(Floats a) { return JOIN(expm1(a.lo), expm1(a.hi)); }
 static ALWAYS_INLINE bool any_of(Ints mask) {
-  const int8 eight = mask.lo | mask.hi;
+  const int16 sixteen = mask.lo | mask.hi;
+  const int8 eight = sixteen.lo | sixteen.hi;
   const long2 two = as_long2(eight.lo | eight.hi);
   return (two.x | two.y) != 0;
 }
-// Four numbers of each lane, which f(lane) gives, put together in registers: narrow stores would keep a wide load waiting.
-#define LANE_QUADS 4
-#define COLLECT(q, f) \
-  for (int k = 0; k < LANE_QUADS; ++k) q[k] = (__typeof__(q[0]))(f(4 * k), f(4 * k + 1), f(4 * k + 2), f(4 * k + 3))
-// The first, second ... of the four numbers, for all lanes.
-#define COMPONENT(Type, q, s) (Type)(q[0].s, q[1].s, q[2].s, q[3].s)
+// Bit i: lane i is in the mask.
+static ALWAYS_INLINE uint lanes_in(Ints mask) {
+  const int16 bit = (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
+  const int16 sixteen = (mask.lo & bit) | (mask.hi & (bit << 16));
+  const int8 eight = sixteen.lo | sixteen.hi;
+  const int4 four = eight.lo | eight.hi;
+  const int2 two = four.lo | four.hi;
+  return (uint)(two.x | two.y);
+}
+// One, two and four numbers of four lanes each. What f(lane) gives for four lanes is put together in registers: narrow stores
+// would keep a wide load waiting.
+#define LANE_QUADS 8
+typedef float4 Singles;
+typedef float8 Pairs;
+typedef float16 Quads;
+typedef int16 QuadInts;
+#define FOUR(Type, f, k) (Type)(f(4 * (k)), f(4 * (k) + 1), f(4 * (k) + 2), f(4 * (k) + 3))
+// The first, second ... of the numbers, for all lanes.
+#define COMPONENT(Type, q, s) (Type)(q[0].s, q[1].s, q[2].s, q[3].s, q[4].s, q[5].s, q[6].s, q[7].s)
+#define ONLY(Type, q) COMPONENT(Type, q, s0123)
+#define EVEN(Type, q) COMPONENT(Type, q, s0246)
+#define ODD(Type, q) COMPONENT(Type, q, s1357)
 #define COMPONENT0(Type, q) COMPONENT(Type, q, s048c)
 #define COMPONENT1(Type, q) COMPONENT(Type, q, s159d)
 #define COMPONENT2(Type, q) COMPONENT(Type, q, s26ae)
@@ -45,24 +68,37 @@ static ALWAYS_INLINE bool any_of(Ints mask) {
 #elif LANES == 1
 typedef float Floats;
 typedef int Ints;
-typedef float4 Quads;
-typedef int4 QuadInts;
 #define LANE_ARRAY
 #define LOAD(array) (*(array))
 #define STORE(value, array) (*(array) = (value))
+#define LANE(array, lane) ((array)[lane])
 #define MASK(condition) (-(condition))
 #define TO_INTS(value) ((int)(value))
 #define TO_FLOATS(value) ((float)(value))
+static ALWAYS_INLINE float square_root(float a) { return sqrt(a); }
+static ALWAYS_INLINE float exponential_less_one(float a) { return expm1(a); }
 static ALWAYS_INLINE bool any_of(Ints mask) { return mask != 0; }
+static ALWAYS_INLINE uint lanes_in(Ints mask) { return mask & 1; }
 #define LANE_QUADS 1
-#define COLLECT(q, f) q[0] = f(0)
+typedef float Singles;
+typedef float2 Pairs;
+typedef float4 Quads;
+typedef int4 QuadInts;
+#define FOUR(Type, f, k) f(0)
+#define ONLY(Type, q) q[0]
+#define EVEN(Type, q) q[0].x
+#define ODD(Type, q) q[0].y
 #define COMPONENT0(Type, q) q[0].x
 #define COMPONENT1(Type, q) q[0].y
 #define COMPONENT2(Type, q) q[0].z
 #define COMPONENT3(Type, q) q[0].w
 #else
-#error "TURBID_INTERLEAVE must be 1 or 16"
+#error "TURBID_INTERLEAVE must be 1 or 32"
 #endif
+
+// The lanes of a mask one after the other; `i` counts them.
+#define FOR_LANES(i, mask) \
+  for (uint rest_ = lanes_in(mask), i = 0; rest_ != 0 && (i = 31 - clz(rest_ & -rest_), true); rest_ &= rest_ - 1)
 
 // fmin and fmax would spend instructions on what is not a number.
 static ALWAYS_INLINE Floats least(Floats a, Floats b) { return a < b ? a : b; }

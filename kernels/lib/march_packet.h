@@ -8,31 +8,34 @@ typedef struct {
   Packet rays;
   LANE_ARRAY float power[TURBID_CHANNELS][LANES], absorbed[TURBID_CHANNELS][LANES], deposited[TURBID_CHANNELS][LANES];
   LANE_ARRAY float floor_power[LANES];
-  LANE_ARRAY int steps[LANES], steps_left[LANES];
+  LANE_ARRAY int steps_left[LANES];  // in this launch and of all that a ray may do
 } Hot;
 
-static void take_path(const Hot* hot, int lane, Path* path) {
+// Returns the steps done in the packet.
+static int take_path(const Hot* hot, int lane, Path* path) {
   path->ray = take_ray(&hot->rays, lane);
   path->room = room_around(&hot->rays, lane, path->ray.x);
   path->power = lane_colour(hot->power, lane);
   path->absorbed = lane_colour(hot->absorbed, lane);
   path->deposited = lane_colour(hot->deposited, lane);
-  path->steps = hot->steps[lane];
-  path->steps_left = hot->steps_left[lane];
+  const int done = path->steps_in_packet - hot->steps_left[lane];
+  path->steps += done;
+  path->steps_left -= done;
+  return done;
 }
 
-static void put_path(Hot* hot, int lane, const Path* path, const Medium* medium, float step_size) {
+static void put_path(Hot* hot, int lane, Path* path, const Medium* medium, const MarchParams* p) {
   if (path->index < 0) {
     clear_lane(&hot->rays, lane);
+    hot->steps_left[lane] = 0;
     return;
   }
-  put_ray(&hot->rays, lane, medium, &path->ray, step_size, path->room);
+  put_ray(&hot->rays, lane, medium, &path->ray, p->step, path->room);
   set_lane_colour(path->power, hot->power, lane);
   set_lane_colour(path->absorbed, hot->absorbed, lane);
   set_lane_colour(path->deposited, hot->deposited, lane);
   hot->floor_power[lane] = path->floor_power;
-  hot->steps[lane] = path->steps;
-  hot->steps_left[lane] = path->steps_left;
+  hot->steps_left[lane] = path->steps_in_packet = min(path->steps_left, p->max_steps - path->steps);
 }
 
 #if TURBID_SCATTERING
@@ -43,7 +46,7 @@ static ALWAYS_INLINE void move_to_losses(const Hot* hot, const global int4* regi
   const Floats squared = depth * depth;
   const Floats centre = 0.5f - depth * (1.0f / 12.0f - squared * (1.0f / 720.0f - squared * (1.0f / 30240.0f - squared * (1.0f / 1209600.0f))));
   const Points v = load_points(hot->rays.v[0]);
-  const Floats back = (centre - 1.0f) * strides->length / sqrt(squared_length(v));
+  const Floats back = (centre - 1.0f) * strides->length / square_root(squared_length(v));
   const Cells cells = locate_all(along(load_points(hot->rays.x[0]), back, v));
   LANE_ARRAY int moves[LANES], entry[LANES], block[LANES], node[LANES];
   LANE_ARRAY float fraction[3][LANES];
@@ -66,9 +69,9 @@ static ALWAYS_INLINE void move_to_losses(const Hot* hot, const global int4* regi
 
 // What the steps of the rays in `gone` take from them, as `attenuate` does; the mask of those left for `attenuate` itself: they
 // may end here, or lose nearly all.
-static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, const global int4* region_tiles, Sinks* sinks,
-                                        const MarchParams* p, Strides* strides, Ints gone) {
-  const Extinctions sigma = extinctions_at(medium, &hot->rays, strides);
+static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const global int4* region_tiles, Sinks* sinks, const MarchParams* p,
+                                        Strides* strides, Ints gone) {
+  const Extinctions sigma = extinctions_of(strides, hot->rays.sigma_s[0], hot->rays.sigma_a[0]);
   const Colours power = load_colours(hot->power[0]);
   Colours depth, scattered, absorbed;
   UNROLL
@@ -90,6 +93,13 @@ static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, const gl
   apart |= gone & MASK(deepest > 1.0f);  // as far as the series in `move_to_losses` goes
 #endif
   const Ints here = gone & ~apart;
+  if (any_of(apart)) {
+    UNROLL
+    for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
+      scattered.channel[channel] = apart ? (Floats)(0.0f) : scattered.channel[channel];
+      absorbed.channel[channel] = apart ? (Floats)(0.0f) : absorbed.channel[channel];
+    }
+  }
 #if TURBID_SCATTERING
   const Ints absorbs = strides->no_source;  // where no source can be left
   const Ints leaves = here & ~absorbs;
@@ -113,7 +123,7 @@ static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, const gl
 #endif
   UNROLL
   for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
-    const Floats s = here ? scattered.channel[channel] : (Floats)(0.0f), a = here ? absorbed.channel[channel] : (Floats)(0.0f);
+    const Floats s = scattered.channel[channel], a = absorbed.channel[channel];
     STORE(power.channel[channel] - (s + a), hot->power[channel]);
     STORE(LOAD(hot->absorbed[channel]) + (a + (absorbs ? s : (Floats)(0.0f))), hot->absorbed[channel]);
     STORE(LOAD(hot->deposited[channel]) + (absorbs ? (Floats)(0.0f) : s), hot->deposited[channel]);

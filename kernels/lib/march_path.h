@@ -21,6 +21,7 @@ typedef struct {
   float floor_power;
   int index;    // in `rays`; < 0: no ray
   int bounces, steps, steps_left;
+  int steps_in_packet;  // that it may do there
 } Path;
 
 // Where the light goes; the same for all paths of a work-item.
@@ -30,6 +31,9 @@ typedef struct {
   global long *deposit, *flux, *tallies, *ground, *transmitted;
   global int* ground_rays;
   int deposits, interfaces;  // how often
+#if LANES > 1
+  long own_tallies[3 * TURBID_TALLY_WORK];  // of the work-item, for others' caches to be left alone
+#endif
 } Sinks;
 
 static Colour none(void) { return colour_of(0.0f, 0.0f, 0.0f); }
@@ -55,7 +59,24 @@ static void store_ray(Sinks* sinks, const Path* path, const Ray* ray, float room
 }
 
 static void tally(Sinks* sinks, int kind, Colour power, const MarchParams* p) {
+#if LANES > 1
+  for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
+    sinks->own_tallies[3 * kind + channel] += (long)(colour_channel(power, channel) * p->fixed_per_watt);
+  }
+#else
   add_power(sinks->tallies + 3 * kind, power, p->fixed_per_watt);
+#endif
+}
+
+// At a work-item's end.
+static void add_tallies(const Sinks* sinks, long steps) {
+#if LANES > 1
+  for (int i = 0; i < 3 * TURBID_TALLY_WORK; ++i) add_count(sinks->tallies + i, sinks->own_tallies[i]);
+#endif
+  global long* work = sinks->tallies + 3 * TURBID_TALLY_WORK;
+  add_count(work, steps);
+  add_count(work + 1, sinks->deposits);
+  add_count(work + 2, sinks->interfaces);
 }
 
 // Ends a path's turn; `left` is power that goes nowhere any more.

@@ -128,6 +128,20 @@ WEIGH4(float)
 WEIGH4(half)
 #endif
 
+// A colour at a node of a source tile.
+#if TURBID_CHANNELS == 3
+#define SOURCE_WIDTH 4
+static ALWAYS_INLINE float4 weigh_colour(const global float* at, const float* rows, int stride, float x) {
+  return weigh4(at, rows, stride, x);
+}
+#else
+#define SOURCE_WIDTH 1
+static ALWAYS_INLINE float weigh_colour(const global float* at, const float* rows, int stride, float x) {
+  const float2 row = WEIGH_ROWS(load2, 1, at, rows, stride);
+  return row.x + x * (row.y - row.x);
+}
+#endif
+
 static int tile_of(const Medium* medium, int set, int block) { return medium->tile_map[set * BLOCKS + block]; }
 
 // Gradient [1] and signed distance [voxels] of a body's surface; defined in blocks with a tile only.

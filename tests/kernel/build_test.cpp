@@ -17,7 +17,7 @@ TEST(KernelFiles, RayProgramsBuildForEveryKindOfScene) {
                                                    {"TURBID_GRADED", choice >> 2 & 1},
                                                    {"TURBID_HETEROGENEOUS", choice >> 3 & 1},
                                                    {"TURBID_SCATTERING", choice >> 4 & 1},
-                                                   {"TURBID_INTERLEAVE", choice & 1 ? 16 : 1},
+                                                   {"TURBID_INTERLEAVE", choice & 1 ? 32 : 1},
                                                    {"TURBID_RAYS_PER_CLAIM", 64},
                                                    {"TURBID_SAMPLES_PER_CLAIM", 64},
                                                    {"TURBID_OWN_SUMS", choice & 1},

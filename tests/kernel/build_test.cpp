@@ -10,12 +10,15 @@ namespace {
 
 TEST(KernelFiles, RayProgramsBuildForEveryKindOfScene) {
   for (const char* file : {"march.cl", "view.cl"}) {
-    for (int choice = 0; choice < 32; ++choice) {
-      const long channels = choice & 1 ? 3 : 1, bodies = choice & 2 ? 2 : 0;
+    for (int choice = 0; choice < 48; ++choice) {  // from 32 on with tiles in half precision, where they are read
+      const long channels = choice & 1 ? 3 : 1, bodies = choice & 2 ? 2 : 0, half = choice >= 32;
       EXPECT_NO_THROW(test::session().build(file, {{"TURBID_CHANNELS", channels},
                                                    {"TURBID_BODIES", bodies},
-                                                   {"TURBID_GRADED", choice >> 2 & 1},
-                                                   {"TURBID_HETEROGENEOUS", choice >> 3 & 1},
+                                                   {"TURBID_GRADED", half | (choice >> 2 & 1)},
+                                                   {"TURBID_HETEROGENEOUS", half | (choice >> 3 & 1)},
+                                                   {"TURBID_HALF_TILES", half},
+                                                   {"TURBID_INDEX_EXPONENT", 13},
+                                                   {"TURBID_COEFFICIENT_EXPONENT", -3},
                                                    {"TURBID_SCATTERING", choice >> 4 & 1},
                                                    {"TURBID_INTERLEAVE", choice & 1 ? 32 : 1},
                                                    {"TURBID_RAYS_PER_CLAIM", 64},

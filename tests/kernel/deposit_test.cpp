@@ -23,6 +23,7 @@ std::vector<std::int64_t> splat(const std::vector<glm::vec4>& points, float fixe
                                                                                      {"TURBID_BODIES", 0},
                                                                                      {"TURBID_GRADED", 0},
                                                                                      {"TURBID_HETEROGENEOUS", 0},
+                                                                                     {"TURBID_HALF_TILES", 0},
                                                                                      {"TURBID_SCATTERING", 1},
                                                                                      {"TURBID_VOXELS_X", 16},
                                                                                      {"TURBID_VOXELS_Y", 16},

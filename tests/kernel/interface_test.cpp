@@ -28,6 +28,7 @@ std::vector<Outcome> meet(const std::vector<Surface>& surfaces) {
                                                                                      {"TURBID_BODIES", 0},
                                                                                      {"TURBID_GRADED", 0},
                                                                                      {"TURBID_HETEROGENEOUS", 0},
+                                                                                     {"TURBID_HALF_TILES", 0},
                                                                                      {"TURBID_SCATTERING", 0},
                                                                                      {"TURBID_VOXELS_X", 8},
                                                                                      {"TURBID_VOXELS_Y", 8},

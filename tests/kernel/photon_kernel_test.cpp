@@ -111,7 +111,7 @@ TEST(HenyeyGreenstein, ScatteredDirectionsHaveItsMomentsAboutAnyAxis) {
 TEST(PhotonProgram, BuildsForEveryKindOfScene) {
   for (int choice = 0; choice < 32; ++choice) {
     EXPECT_NO_THROW(session().build("photon.cl", {{"TURBID_CHANNELS", 1}, {"TURBID_BODIES", choice & 1 ? 2 : 0},
-                                                  {"TURBID_GRADED", choice >> 1 & 1}, {"TURBID_HETEROGENEOUS", choice >> 2 & 1},
+                                                  {"TURBID_GRADED", choice >> 1 & 1}, {"TURBID_HETEROGENEOUS", choice >> 2 & 1}, {"TURBID_HALF_TILES", 0},
                                                   {"TURBID_SCATTERING", choice >> 3 & 1}, {"TURBID_ANISOTROPIC", choice >> 4 & 1},
                                                   {"TURBID_VOXELS_X", 16},
                                                   {"TURBID_VOXELS_Y", 24}, {"TURBID_VOXELS_Z", 8}}))

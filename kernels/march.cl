@@ -70,6 +70,7 @@ kernel void march(MEDIUM_ARGUMENTS, const global int4* region_tiles, MarchParams
   Path paths[LANES];
   Hot hot;
   Claim claim = {0, 0};
+  hot.late.any = false;
   LANE_ARRAY int done[LANES];
   for (int i = 0; i < LANES; ++i) {
     paths[i].index = -1;
@@ -87,6 +88,9 @@ kernel void march(MEDIUM_ARGUMENTS, const global int4* region_tiles, MarchParams
     STORE(LOAD(done) - wanted, done);
     Strides strides;
     const Ints gone = glide(&medium, region_tiles, &hot.rays, wanted, p.step, p.ground, p.ground_height, &strides);
+#if TURBID_SCATTERING
+    add_late(&hot.late, &sinks, &p);
+#endif
     Ints apart = (Ints)(0);
     if (any_of(gone & LOAD(hot.rays.participates))) apart = attenuate_all(&hot, &medium, region_tiles, &sinks, &p, &strides, gone);
     const Ints waiting = (alive & ~gone) | apart;
@@ -118,6 +122,9 @@ kernel void march(MEDIUM_ARGUMENTS, const global int4* region_tiles, MarchParams
       put_path(&hot, i, path, &medium, p.step);
     }
   }
+#if TURBID_SCATTERING
+  add_late(&hot.late, &sinks, &p);
+#endif
   long steps = 0;
   for (int i = 0; i < LANES; ++i) steps += done[i];
   global long* work = tallies + 3 * TURBID_TALLY_WORK;

@@ -57,6 +57,17 @@ static ALWAYS_INLINE void add_row(global long* at, Colour left, Colour right) {
 }
 #endif
 
+// Asks for the nodes around a cell, whose lowest corner is `node`, to be in the cache when light is added to them.
+static ALWAYS_INLINE void expect_own(const global long* sums, int node) {
+  _Pragma("unroll")
+  for (int row = 0; row < 4; ++row) {
+    const global long* at =
+        sums + OWN_WIDTH * ((size_t)node + TURBID_TILE_EDGE * ((row & 1) + TURBID_TILE_EDGE * (row >> 1)));
+    __builtin_prefetch((const void*)(ulong)at, 1);
+    __builtin_prefetch((const void*)(ulong)(at + 2 * OWN_WIDTH - 1), 1);
+  }
+}
+
 static ALWAYS_INLINE void splat_own(global long* sums, int tile, Cell cell, Colour power, float fixed_per_watt) {
   global long* at = sums + OWN_WIDTH * ((size_t)tile * TURBID_TILE_NODES + cell.node);
   const float3 f = cell.fraction;

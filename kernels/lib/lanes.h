@@ -42,6 +42,18 @@ static ALWAYS_INLINE bool any_of(Ints mask) {
 #define COMPONENT1(Type, q) COMPONENT(Type, q, s159d)
 #define COMPONENT2(Type, q) COMPONENT(Type, q, s26ae)
 #define COMPONENT3(Type, q) COMPONENT(Type, q, s37bf)
+// Three numbers of each lane, one after the other: out[lane][4], the fourth 0.
+static ALWAYS_INLINE void store_triples(Floats a, Floats b, Floats c, float* out) {
+#define EVEN(p, q) __builtin_shufflevector(p, q, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23)
+#define ODD(p, q) __builtin_shufflevector(p, q, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31)
+  const Floats none = (Floats)(0.0f), low = EVEN(a, c), high = ODD(a, c), low_b = EVEN(b, none), high_b = ODD(b, none);
+  STORE(EVEN(low, low_b), out);
+  STORE(ODD(low, low_b), out + 16);
+  STORE(EVEN(high, high_b), out + 32);
+  STORE(ODD(high, high_b), out + 48);
+#undef EVEN
+#undef ODD
+}
 #elif LANES == 1
 typedef float Floats;
 typedef int Ints;
@@ -54,6 +66,9 @@ typedef int4 QuadInts;
 #define TO_INTS(value) ((int)(value))
 #define TO_FLOATS(value) ((float)(value))
 static ALWAYS_INLINE bool any_of(Ints mask) { return mask != 0; }
+static ALWAYS_INLINE void store_triples(Floats a, Floats b, Floats c, float* out) {
+  out[0] = a, out[1] = b, out[2] = c, out[3] = 0.0f;
+}
 #define LANE_QUADS 1
 #define COLLECT(q, f) q[0] = f(0)
 #define COMPONENT0(Type, q) q[0].x

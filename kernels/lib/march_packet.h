@@ -4,8 +4,18 @@
 #define TURBID_LIB_MARCH_PACKET_H
 #include "lib/march_path.h"
 
+// What the rays of a packet leave in the medium's nodes on a step. It is added there one step later: the nodes have come into
+// the cache by then, and the additions need not wait for what the step computes.
+typedef struct {
+  float power[4 * LANES] __attribute__((aligned(64)));  // [lane][4], or [lane] in grey
+  LANE_ARRAY float fraction[3][LANES];  // in the cell
+  LANE_ARRAY int node[LANES];           // lowest corner of the cell, counted through all tiles; < 0: nothing is left
+  bool any;
+} Late;
+
 typedef struct {
   Packet rays;
+  Late late;
   LANE_ARRAY float power[TURBID_CHANNELS][LANES], absorbed[TURBID_CHANNELS][LANES], deposited[TURBID_CHANNELS][LANES];
   LANE_ARRAY float floor_power[LANES];
   LANE_ARRAY int steps[LANES], steps_left[LANES];
@@ -36,6 +46,37 @@ static void put_path(Hot* hot, int lane, const Path* path, const Medium* medium,
 }
 
 #if TURBID_SCATTERING
+// Keeps what a step leaves around the points `fraction` into their cells.
+static ALWAYS_INLINE void leave_late(Late* late, Ints leaves, Ints node, Points fraction, Colours left, Sinks* sinks) {
+  late->any = any_of(leaves);
+  STORE(leaves ? node : (Ints)(-1), late->node);
+  store_points(fraction, late->fraction[0]);
+#if TURBID_CHANNELS == 3
+  store_triples(left.channel[0], left.channel[1], left.channel[2], late->power);
+#else
+  STORE(left.channel[0], late->power);
+#endif
+#if TURBID_OWN_SUMS
+  LANE_ARRAY int there[LANES];
+  STORE(not_negative(LOAD(late->node)), there);
+  UNROLL
+  for (int i = 0; i < LANES; ++i) expect_own(sinks->deposit, there[i]);
+#endif
+}
+
+// Adds what the packet's last step left.
+static ALWAYS_INLINE void add_late(Late* late, Sinks* sinks, const MarchParams* p) {
+  if (!late->any) return;
+  late->any = false;
+  for (int i = 0; i < LANES; ++i) {
+    Cell cell;
+    cell.node = late->node[i];
+    if (cell.node < 0) continue;
+    cell.fraction = (float3)(late->fraction[0][i], late->fraction[1][i], late->fraction[2][i]);
+    add_deposit(sinks, p, 0, cell, ((const Colour*)late->power)[i]);
+  }
+}
+
 // Moves the points of thick steps from half way to where the light is lost on average, see `centre_of_loss`, unless the region
 // has no tile there.
 static ALWAYS_INLINE void move_to_losses(const Hot* hot, const global int4* region_tiles, Strides* strides, Ints thick,
@@ -93,21 +134,22 @@ static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, const gl
 #if TURBID_SCATTERING
   const Ints absorbs = strides->no_source;  // where no source can be left
   const Ints leaves = here & ~absorbs;
-  LANE_ARRAY int deposits[LANES], tile[LANES];
-  LANE_ARRAY float left[TURBID_CHANNELS][LANES];
-  STORE(leaves, deposits);
+  LANE_ARRAY int tile[LANES];
   STORE(strides->source_at, tile);
-  store_colours(scattered, left[0]);
   const Ints thick = leaves & MASK(deepest > THICK_STEP);
   if (any_of(thick)) move_to_losses(hot, region_tiles, strides, thick, deepest, tile);
+  leave_late(&hot->late, leaves, LOAD(tile) + LOAD(strides->node), load_points(strides->fraction[0]), scattered, sinks);
+#if TURBID_FIRST_MOMENT
+  LANE_ARRAY int deposits[LANES];
+  LANE_ARRAY float left[TURBID_CHANNELS][LANES];
+  STORE(leaves, deposits);
+  store_colours(scattered, left[0]);
   for (int i = 0; i < LANES; ++i) {
     if (!deposits[i]) continue;
-    float3 direction = (float3)(0.0f);
-#if TURBID_FIRST_MOMENT
-    direction = normalize((float3)(hot->rays.v[0][i], hot->rays.v[1][i], hot->rays.v[2][i]));
-#endif
-    deposit(sinks, p, tile[i] / TURBID_TILE_NODES, cell_of(strides, i), lane_colour(left, i), direction);
+    const float3 direction = normalize((float3)(hot->rays.v[0][i], hot->rays.v[1][i], hot->rays.v[2][i]));
+    add_moment(sinks, p, tile[i] / TURBID_TILE_NODES, cell_of(strides, i), lane_colour(left, i), direction);
   }
+#endif
 #else
   const Ints absorbs = (Ints)(-1);
 #endif

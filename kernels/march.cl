@@ -70,7 +70,7 @@ kernel void march(MEDIUM_ARGUMENTS, const global int4* region_tiles, MarchParams
   Path paths[LANES];
   Hot hot;
   Claim claim = {0, 0};
-  hot.late.any = false;
+  clear_late(&hot.late);
   LANE_ARRAY int done[LANES];
   for (int i = 0; i < LANES; ++i) {
     paths[i].index = -1;
@@ -126,7 +126,7 @@ kernel void march(MEDIUM_ARGUMENTS, const global int4* region_tiles, MarchParams
   add_late(&hot.late, &sinks, &p);
 #endif
   long steps = 0;
-  for (int i = 0; i < LANES; ++i) steps += done[i];
+  for (int i = 0; i < LANES; ++i) steps += done[i], sinks.deposits += hot.late.count[i];
   global long* work = tallies + 3 * TURBID_TALLY_WORK;
   add_count(work, steps);
   add_count(work + 1, sinks.deposits);

@@ -5,13 +5,23 @@
 #include "lib/march_path.h"
 
 // What the rays of a packet leave in the medium's nodes on a step. It is added there one step later: the nodes have come into
-// the cache by then, and the additions need not wait for what the step computes.
+// the cache by then, and the additions need not wait for what the step computes. A ray that leaves nothing adds nothing to where
+// it left something last: that costs less than asking.
 typedef struct {
   float power[4 * LANES] __attribute__((aligned(64)));  // [lane][4], or [lane] in grey
-  LANE_ARRAY float fraction[3][LANES];  // in the cell
-  LANE_ARRAY int node[LANES];           // lowest corner of the cell, counted through all tiles; < 0: nothing is left
+  LANE_ARRAY float fraction[3][LANES];                  // in the cell
+  LANE_ARRAY int node[LANES];                           // lowest corner of the cell, counted through all tiles
+  LANE_ARRAY int count[LANES];                          // of deposits
   bool any;
 } Late;
+
+static void clear_late(Late* late) {
+  late->any = false;
+  for (int i = 0; i < LANES; ++i) {
+    late->node[i] = 2 * i;  // apart, so that none waits for another
+    late->count[i] = 0;
+  }
+}
 
 typedef struct {
   Packet rays;
@@ -46,21 +56,25 @@ static void put_path(Hot* hot, int lane, const Path* path, const Medium* medium,
 }
 
 #if TURBID_SCATTERING
-// Keeps what a step leaves around the points `fraction` into their cells.
+// Keeps what the rays in `leaves` leave around the points `fraction` into their cells.
 static ALWAYS_INLINE void leave_late(Late* late, Ints leaves, Ints node, Points fraction, Colours left, Sinks* sinks) {
   late->any = any_of(leaves);
-  STORE(leaves ? node : (Ints)(-1), late->node);
+  STORE(leaves ? node : LOAD(late->node), late->node);
+  STORE(LOAD(late->count) - leaves, late->count);  // a mask is -1
   store_points(fraction, late->fraction[0]);
+  UNROLL
+  for (int channel = 0; channel < TURBID_CHANNELS; ++channel) {
+    left.channel[channel] = leaves ? left.channel[channel] : (Floats)(0.0f);
+  }
 #if TURBID_CHANNELS == 3
   store_triples(left.channel[0], left.channel[1], left.channel[2], late->power);
 #else
   STORE(left.channel[0], late->power);
 #endif
-#if TURBID_OWN_SUMS
-  LANE_ARRAY int there[LANES];
-  STORE(not_negative(LOAD(late->node)), there);
+#if TURBID_OWN_SUMS && TURBID_CHANNELS == 3
+  // A grey node is an eighth of a cache line: most of them are in the cache anyway.
   UNROLL
-  for (int i = 0; i < LANES; ++i) expect_own(sinks->deposit, there[i]);
+  for (int i = 0; i < LANES; ++i) expect_own(sinks->deposit, late->node[i]);
 #endif
 }
 
@@ -71,7 +85,6 @@ static ALWAYS_INLINE void add_late(Late* late, Sinks* sinks, const MarchParams* 
   for (int i = 0; i < LANES; ++i) {
     Cell cell;
     cell.node = late->node[i];
-    if (cell.node < 0) continue;
     cell.fraction = (float3)(late->fraction[0][i], late->fraction[1][i], late->fraction[2][i]);
     add_deposit(sinks, p, 0, cell, ((const Colour*)late->power)[i]);
   }

@@ -85,7 +85,6 @@ static ALWAYS_INLINE void add_deposit(Sinks* sinks, const MarchParams* p, int ti
 #else
   splat(sinks->deposit, tile, cell, scattered, p->fixed_per_watt);
 #endif
-  ++sinks->deposits;
 }
 
 #if TURBID_FIRST_MOMENT
@@ -124,6 +123,7 @@ static bool attenuate(Path* path, const Medium* medium, Sinks* sinks, const Marc
       if (there >= 0) cell = centre, tile = there;
     }
     add_deposit(sinks, p, tile, cell, scattered);
+    ++sinks->deposits;
 #if TURBID_FIRST_MOMENT
     add_moment(sinks, p, tile, cell, scattered, direction);
 #endif

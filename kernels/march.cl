@@ -88,9 +88,6 @@ kernel void march(MEDIUM_ARGUMENTS, const global int4* region_tiles, MarchParams
     STORE(LOAD(done) - wanted, done);
     Strides strides;
     const Ints gone = glide(&medium, region_tiles, &hot.rays, wanted, p.step, p.ground, p.ground_height, &strides);
-#if TURBID_SCATTERING
-    add_late(&hot.late, &sinks, &p);
-#endif
     Ints apart = (Ints)(0);
     if (any_of(gone & LOAD(hot.rays.participates))) apart = attenuate_all(&hot, &medium, region_tiles, &sinks, &p, &strides, gone);
     const Ints waiting = (alive & ~gone) | apart;
@@ -123,7 +120,7 @@ kernel void march(MEDIUM_ARGUMENTS, const global int4* region_tiles, MarchParams
     }
   }
 #if TURBID_SCATTERING
-  add_late(&hot.late, &sinks, &p);
+  add_late(&hot.late, &sinks, &p, 0, LANES);
 #endif
   long steps = 0;
   for (int i = 0; i < LANES; ++i) steps += done[i], sinks.deposits += hot.late.count[i];

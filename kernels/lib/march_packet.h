@@ -78,11 +78,11 @@ static ALWAYS_INLINE void leave_late(Late* late, Ints leaves, Ints node, Points 
 #endif
 }
 
-// Adds what the packet's last step left.
-static ALWAYS_INLINE void add_late(Late* late, Sinks* sinks, const MarchParams* p) {
+// Adds what the lanes from ... to - 1 left on their last step. Two halves stand apart in a step, so that each has other work
+// beside it that waits for something else.
+static ALWAYS_INLINE void add_late(Late* late, Sinks* sinks, const MarchParams* p, int from, int to) {
   if (!late->any) return;
-  late->any = false;
-  for (int i = 0; i < LANES; ++i) {
+  for (int i = from; i < to; ++i) {
     Cell cell;
     cell.node = late->node[i];
     cell.fraction = (float3)(late->fraction[0][i], late->fraction[1][i], late->fraction[2][i]);
@@ -122,6 +122,9 @@ static ALWAYS_INLINE void move_to_losses(const Hot* hot, const global int4* regi
 // may end here, or lose nearly all.
 static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, const global int4* region_tiles, Sinks* sinks,
                                         const MarchParams* p, Strides* strides, Ints gone) {
+#if TURBID_SCATTERING
+  add_late(&hot->late, sinks, p, 0, LANES / 2);
+#endif
   const Extinctions sigma = extinctions_at(medium, &hot->rays, strides);
   const Colours power = load_colours(hot->power[0]);
   Colours depth, scattered, absorbed;
@@ -151,6 +154,7 @@ static ALWAYS_INLINE Ints attenuate_all(Hot* hot, const Medium* medium, const gl
   STORE(strides->source_at, tile);
   const Ints thick = leaves & MASK(deepest > THICK_STEP);
   if (any_of(thick)) move_to_losses(hot, region_tiles, strides, thick, deepest, tile);
+  add_late(&hot->late, sinks, p, LANES / 2, LANES);
   leave_late(&hot->late, leaves, LOAD(tile) + LOAD(strides->node), load_points(strides->fraction[0]), scattered, sinks);
 #if TURBID_FIRST_MOMENT
   LANE_ARRAY int deposits[LANES];

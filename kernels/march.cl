@@ -70,6 +70,7 @@ kernel void march(MEDIUM_ARGUMENTS, const global int4* region_tiles, MarchParams
   Path paths[LANES];
   Hot hot;
   Claim claim = {0, 0};
+  clear_late(&hot.late);
   for (int i = 0; i < LANES; ++i) {
     paths[i].index = -1;
     clear_lane(&hot.rays, i);
@@ -115,6 +116,10 @@ kernel void march(MEDIUM_ARGUMENTS, const global int4* region_tiles, MarchParams
     }
     alive = MASK(LOAD(hot.rays.region) >= 0);
   }
+#if TURBID_SCATTERING
+  add_late(&hot.late, &sinks, &p, 0, LANES);
+#endif
+  for (int i = 0; i < LANES; ++i) sinks.deposits += hot.late.count[i];
   add_tallies(&sinks, done);
 }
 

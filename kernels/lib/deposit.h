@@ -52,11 +52,21 @@ static ALWAYS_INLINE void add_row(global long* at, Colour left, Colour right) {
 }
 #else
 #define OWN_WIDTH 1
-static ALWAYS_INLINE void add_row(global long* at, Colour left, Colour right) {
-  vstore2(vload2(0, at) + convert_long2((float2)(left, right)), 0, at);
-}
+static ALWAYS_INLINE void add_row(global long* at, long2 units) { vstore2(vload2(0, at) + units, 0, at); }
 #endif
 
+// Asks for the nodes around a cell, whose lowest corner is `node`, to be in the cache when light is added to them.
+static ALWAYS_INLINE void expect_own(const global long* sums, int node) {
+  _Pragma("unroll")
+  for (int row = 0; row < 4; ++row) {
+    const global long* at =
+        sums + OWN_WIDTH * ((size_t)node + TURBID_TILE_EDGE * ((row & 1) + TURBID_TILE_EDGE * (row >> 1)));
+    __builtin_prefetch((const void*)(ulong)at, 1);
+    __builtin_prefetch((const void*)(ulong)(at + 2 * OWN_WIDTH - 1), 1);
+  }
+}
+
+#if TURBID_CHANNELS == 3
 static ALWAYS_INLINE void splat_own(global long* sums, int tile, Cell cell, Colour power, float fixed_per_watt) {
   global long* at = sums + OWN_WIDTH * ((size_t)tile * TURBID_TILE_NODES + cell.node);
   const float3 f = cell.fraction;
@@ -68,5 +78,19 @@ static ALWAYS_INLINE void splat_own(global long* sums, int tile, Cell cell, Colo
   add_row(at + OWN_WIDTH * TURBID_TILE_EDGE * TURBID_TILE_EDGE, far_down - f.x * far_down, f.x * far_down);
   add_row(at + OWN_WIDTH * TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1), far_up - f.x * far_up, f.x * far_up);
 }
+#else
+// Corners in the order of their nodes: x fastest, z slowest.
+static ALWAYS_INLINE void splat_own(global long* sums, int tile, Cell cell, Colour power, float fixed_per_watt) {
+  const float8 along_x = (float8)(1, 0, 1, 0, 1, 0, 1, 0) + (float8)(-1, 1, -1, 1, -1, 1, -1, 1) * cell.fraction.x;
+  const float8 along_y = (float8)(1, 1, 0, 0, 1, 1, 0, 0) + (float8)(-1, -1, 1, 1, -1, -1, 1, 1) * cell.fraction.y;
+  const float8 along_z = (float8)(1, 1, 1, 1, 0, 0, 0, 0) + (float8)(-1, -1, -1, -1, 1, 1, 1, 1) * cell.fraction.z;
+  const long8 units = convert_long8(along_x * along_y * (along_z * (power * fixed_per_watt)));
+  global long* at = sums + (size_t)tile * TURBID_TILE_NODES + cell.node;
+  add_row(at, units.s01);
+  add_row(at + TURBID_TILE_EDGE, units.s23);
+  add_row(at + TURBID_TILE_EDGE * TURBID_TILE_EDGE, units.s45);
+  add_row(at + TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1), units.s67);
+}
+#endif
 
 #endif

@@ -65,6 +65,23 @@ typedef int16 QuadInts;
 #define COMPONENT1(Type, q) COMPONENT(Type, q, s159d)
 #define COMPONENT2(Type, q) COMPONENT(Type, q, s26ae)
 #define COMPONENT3(Type, q) COMPONENT(Type, q, s37bf)
+// Three numbers of each lane, one after the other: out[lane][4], the fourth 0.
+static ALWAYS_INLINE void store_triples_of_half(float16 a, float16 b, float16 c, float* out) {
+#define FIRST_HALVES(p, q) __builtin_shufflevector(p, q, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23)
+#define SECOND_HALVES(p, q) __builtin_shufflevector(p, q, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31)
+  const float16 none = (float16)(0.0f), low = FIRST_HALVES(a, c), high = SECOND_HALVES(a, c), low_b = FIRST_HALVES(b, none),
+                high_b = SECOND_HALVES(b, none);
+  *(float16*)out = FIRST_HALVES(low, low_b);
+  *(float16*)(out + 16) = SECOND_HALVES(low, low_b);
+  *(float16*)(out + 32) = FIRST_HALVES(high, high_b);
+  *(float16*)(out + 48) = SECOND_HALVES(high, high_b);
+#undef FIRST_HALVES
+#undef SECOND_HALVES
+}
+static ALWAYS_INLINE void store_triples(Floats a, Floats b, Floats c, float* out) {
+  store_triples_of_half(a.lo, b.lo, c.lo, out);
+  store_triples_of_half(a.hi, b.hi, c.hi, out + 64);
+}
 #elif LANES == 1
 typedef float Floats;
 typedef int Ints;
@@ -79,6 +96,9 @@ static ALWAYS_INLINE float square_root(float a) { return sqrt(a); }
 static ALWAYS_INLINE float exponential_less_one(float a) { return expm1(a); }
 static ALWAYS_INLINE bool any_of(Ints mask) { return mask != 0; }
 static ALWAYS_INLINE uint lanes_in(Ints mask) { return mask & 1; }
+static ALWAYS_INLINE void store_triples(Floats a, Floats b, Floats c, float* out) {
+  out[0] = a, out[1] = b, out[2] = c, out[3] = 0.0f;
+}
 #define LANE_QUADS 1
 typedef float Singles;
 typedef float2 Pairs;

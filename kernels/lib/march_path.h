@@ -100,19 +100,22 @@ static void collect(Sinks* sinks, const MarchParams* p, int texel, float3 x, flo
 }
 
 // Leaves scattered power in the nodes around a point.
-static ALWAYS_INLINE void deposit(Sinks* sinks, const MarchParams* p, int tile, Cell cell, Colour scattered, float3 direction) {
-#if TURBID_FIRST_MOMENT
-  splat(sinks->flux, tile, cell, scattered * direction.x, p->fixed_per_watt);
-  splat(sinks->flux + p->flux_stride, tile, cell, scattered * direction.y, p->fixed_per_watt);
-  splat(sinks->flux + 2 * (size_t)p->flux_stride, tile, cell, scattered * direction.z, p->fixed_per_watt);
-#endif
+static ALWAYS_INLINE void add_deposit(Sinks* sinks, const MarchParams* p, int tile, Cell cell, Colour scattered) {
 #if TURBID_OWN_SUMS
   splat_own(sinks->deposit, tile, cell, scattered, p->fixed_per_watt);
 #else
   splat(sinks->deposit, tile, cell, scattered, p->fixed_per_watt);
 #endif
-  ++sinks->deposits;
 }
+
+#if TURBID_FIRST_MOMENT
+// The same times the light's direction.
+static void add_moment(Sinks* sinks, const MarchParams* p, int tile, Cell cell, Colour scattered, float3 direction) {
+  splat(sinks->flux, tile, cell, scattered * direction.x, p->fixed_per_watt);
+  splat(sinks->flux + p->flux_stride, tile, cell, scattered * direction.y, p->fixed_per_watt);
+  splat(sinks->flux + 2 * (size_t)p->flux_stride, tile, cell, scattered * direction.z, p->fixed_per_watt);
+}
+#endif
 
 // Takes what a segment loses out of the path: its scattered part into the source tile, the rest absorbed. False: too weak to
 // follow, the path has ended.
@@ -140,7 +143,11 @@ static bool attenuate(Path* path, const Medium* medium, Sinks* sinks, const Marc
       const int there = tile_of(medium, medium->regions[path->ray.region].source_set, centre.block);
       if (there >= 0) cell = centre, tile = there;
     }
-    deposit(sinks, p, tile, cell, scattered, direction);
+    add_deposit(sinks, p, tile, cell, scattered);
+    ++sinks->deposits;
+#if TURBID_FIRST_MOMENT
+    add_moment(sinks, p, tile, cell, scattered, direction);
+#endif
     path->deposited += scattered;
   } else {
     absorbed += scattered;

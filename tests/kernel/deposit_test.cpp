@@ -131,5 +131,14 @@ TEST(March, NeitherTheOrderOfRaysNorTheBatchShowsInTheDeposit) {
             test::march(march_scene(), kSun, short_batches).deposit);  // the state kept between batches is complete
 }
 
+TEST(March, TheNumberOfWorkersDoesNotShowInTheDeposit) {
+  const std::vector<std::int64_t> deposit = test::march(march_scene(), kSun).deposit;
+  for (int workers : {1, 3, 7}) {
+    MarchSettings settings;
+    settings.workers = workers;
+    EXPECT_EQ(deposit, test::march(march_scene(), kSun, settings).deposit) << workers << " workers";
+  }
+}
+
 }  // namespace
 }  // namespace turbid

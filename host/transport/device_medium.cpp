@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "host/base/parallel.h"
+#include "host/transport/block_states.h"
 
 namespace turbid {
 namespace {
@@ -14,17 +15,17 @@ namespace {
 constexpr int kTileEdge = TURBID_TILE_EDGE;
 constexpr int kTileNodes = TURBID_TILE_NODES;
 /// Nodes of a tile with `halo` more on each side.
-constexpr int halo_edge(int halo) { return kTileEdge + 2 * halo; }
-constexpr int halo_nodes(int halo) { return halo_edge(halo) * halo_edge(halo) * halo_edge(halo); }
+constexpr int halo_edge(int halo) {
+  return kTileEdge + 2 * halo;
+}
+constexpr int halo_nodes(int halo) {
+  return halo_edge(halo) * halo_edge(halo) * halo_edge(halo);
+}
 constexpr int kDistanceHalo = 1, kIndexHalo = 2;
 
-glm::ivec3 block_coordinates(int block, glm::ivec3 blocks) {
-  return {block % blocks.x, (block / blocks.x) % blocks.y, block / (blocks.x * blocks.y)};
-}
-
-/// (gradient, value) per node from values with a halo, by central differences of second order (halo 1) or fourth (halo 2).
-/// Second order adds h^2/6 (u_xxx, u_yyy, u_zzz) to the gradient, which is no gradient of anything: rays of different
-/// directions then have different speeds at one place, and power is not kept along them.
+/// (gradient, value) per node from values with a halo, by central differences of second order (halo 1) or fourth (halo
+/// 2). Second order adds h^2/6 (u_xxx, u_yyy, u_zzz) to the gradient, which is no gradient of anything: rays of
+/// different directions then have different speeds at one place, and power is not kept along them.
 template <int halo>
 void with_gradient(const std::vector<float>& values, float* out) {
   constexpr int edge = halo_edge(halo), strides[3] = {1, edge, edge * edge};
@@ -67,47 +68,6 @@ class TileMaps {
   std::vector<int> map_;
 };
 
-/// For every block whether body r's surface may pass through it: by trilinear interpolation exactly where both signs occur;
-/// and where the block ends within the gap to another body that r touches.
-std::vector<int> classify(const MediumVolume& medium, int r) {
-  const glm::ivec3 blocks = medium.frame().blocks();
-  std::vector<int> state(blocks.x * blocks.y * blocks.z, TURBID_TILE_OUTSIDE);
-  parallel_ranges(static_cast<int>(state.size()), [&](int begin, int end) {
-    std::vector<float> nodes(kTileNodes);
-    for (int block = begin; block < end; ++block) {
-      medium.read_signed_distance(r, 8 * block_coordinates(block, blocks), glm::ivec3(kTileEdge), nodes);
-      const auto [low, high] = std::minmax_element(nodes.begin(), nodes.end());
-      state[block] = *low >= TURBID_TOUCH ? TURBID_TILE_OUTSIDE : *high < 0.0f ? TURBID_TILE_INSIDE : 0;
-    }
-  });
-  return state;
-}
-
-/// Blocks in which region r may own a point.
-std::vector<int> presence(int r, const std::vector<std::vector<int>>& body_state, int blocks) {
-  std::vector<int> result(blocks, TURBID_TILE_OUTSIDE);
-  for (int block = 0; block < blocks; ++block) {
-    bool present = r == 0 || body_state[r][block] != TURBID_TILE_OUTSIDE;
-    for (std::size_t higher = r + 1; higher < body_state.size(); ++higher) {
-      if (body_state[higher][block] == TURBID_TILE_INSIDE) present = false;
-    }
-    if (present) result[block] = 0;
-  }
-  return result;
-}
-
-std::vector<int> only_region(const std::vector<std::vector<int>>& body_state, int blocks) {
-  std::vector<int> result(blocks, 0);
-  for (int block = 0; block < blocks; ++block) {
-    for (int r = static_cast<int>(body_state.size()) - 1; r >= 1; --r) {
-      if (body_state[r][block] == TURBID_TILE_OUTSIDE) continue;
-      result[block] = body_state[r][block] == TURBID_TILE_INSIDE ? r : TURBID_MIXED_BLOCK;
-      break;
-    }
-  }
-  return result;
-}
-
 /// Calls fill(block, tile) for every block of the set that has a tile.
 template <class Fill>
 void for_each_tile(const TileMaps& maps, int set, int blocks, const Fill& fill) {
@@ -145,14 +105,10 @@ std::vector<float> room_for(int tiles, bool read, int width) {
 }  // namespace
 
 std::vector<cl::Define> DeviceMedium::defines() const {
-  return {{"TURBID_CHANNELS", features.channels},
-          {"TURBID_BODIES", features.bodies},
-          {"TURBID_GRADED", features.graded_index},
-          {"TURBID_HETEROGENEOUS", features.heterogeneous},
-          {"TURBID_SCATTERING", features.scattering},
-          {"TURBID_VOXELS_X", frame.voxels.x},
-          {"TURBID_VOXELS_Y", frame.voxels.y},
-          {"TURBID_VOXELS_Z", frame.voxels.z}};
+  return {{"TURBID_CHANNELS", features.channels},     {"TURBID_BODIES", features.bodies},
+          {"TURBID_GRADED", features.graded_index},   {"TURBID_HETEROGENEOUS", features.heterogeneous},
+          {"TURBID_SCATTERING", features.scattering}, {"TURBID_VOXELS_X", frame.voxels.x},
+          {"TURBID_VOXELS_Y", frame.voxels.y},        {"TURBID_VOXELS_Z", frame.voxels.z}};
 }
 
 DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, const SceneFeatures& features) {
@@ -165,8 +121,9 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
   const float h = device.frame.voxel_size;
   TileMaps maps(block_count);
   std::vector<std::vector<int>> body_state(regions);
-  for (int r = 1; r < regions; ++r) body_state[r] = classify(medium, r);
-  device.block_region = only_region(body_state, block_count);
+  std::vector<float> slope(block_count, 0.0f);
+  for (int r = 1; r < regions; ++r) body_state[r] = classify(medium, r, &slope);
+  device.block_region = only_region(body_state, slope);
   device.region_params.resize(regions);
 
   // Signed distances.
@@ -205,7 +162,8 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
       parallel_ranges(block_count, [&](int begin, int end) {
         std::vector<float> halo(halo_nodes(kIndexHalo));
         for (int block = begin; block < end; ++block) {
-          medium.read_eta(r, 8 * block_coordinates(block, blocks) - kIndexHalo, glm::ivec3(halo_edge(kIndexHalo)), halo);
+          medium.read_eta(r, 8 * block_coordinates(block, blocks) - kIndexHalo, glm::ivec3(halo_edge(kIndexHalo)),
+                          halo);
           const bool flat = std::all_of(halo.begin(), halo.end(), [&](float eta) { return eta == ambient; });
           if (flat) present[block] = TURBID_TILE_OUTSIDE;
         }
@@ -219,7 +177,8 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
   for (const auto& [r, set] : index_sets) {
     for_each_tile(maps, set, block_count, [&, reader = r](int block, int tile) {
       std::vector<float> halo(halo_nodes(kIndexHalo));
-      medium.read_eta(reader, 8 * block_coordinates(block, blocks) - kIndexHalo, glm::ivec3(halo_edge(kIndexHalo)), halo);
+      medium.read_eta(reader, 8 * block_coordinates(block, blocks) - kIndexHalo, glm::ivec3(halo_edge(kIndexHalo)),
+                      halo);
       for (float& eta : halo) eta = 0.5f * eta * eta;
       with_gradient<kIndexHalo>(halo, indices.data() + static_cast<std::size_t>(tile) * kTileNodes * 4);
     });

@@ -32,8 +32,7 @@ kernel void follow_path(MEDIUM_ARGUMENTS, global float* rays, float step_size, i
     }
     ++surfaces;
     const float eta_from = length(ray.v), eta_to = eta_at(&medium, step.next_region, locate(step.beyond));
-    const float3 normal = surface_normal(&medium, step.surface, step.beyond);
-    const Interface surface = meet_interface(ray.v / eta_from, normal, eta_from, eta_to);
+    const Interface surface = meet_interface(ray.v / eta_from, step.normal, eta_from, eta_to);
     if (surface.reflectance < 1.0f) {
       ray.x = step.beyond;
       ray.v = eta_to * surface.refracted;

@@ -240,7 +240,7 @@ static bool follow(Photon* photon, const Medium* medium, const PhotonParams* p, 
     return true;
   }
   float3 normal = (float3)(axis == 0, axis == 1, axis == 2);  // bodies that differ across a periodic seam
-  if (step.event == EVENT_SURFACE) normal = surface_normal(medium, step.surface, beyond);
+  if (step.event == EVENT_SURFACE) normal = step.normal;
   const Interface surface = meet_interface(ray->v / eta_from, normal, eta_from, eta_to);
   if (uniform(draw(&photon->random).x) < surface.reflectance) {
     ray->v = eta_from * surface.reflected;

@@ -152,9 +152,8 @@ static bool meet_surface(Path* path, const Medium* medium, const Surroundings* a
   Branch* branch = &path->now;
   const int next_region = step->next_region;
   if (medium->regions[next_region].opaque) {
-    const float3 normal = surface_normal(medium, step->surface, step->beyond);
     path->surfaces += colour_rgb(branch->weight) / (p->eta_observer * p->eta_observer) *
-                      opaque_radiance(medium, around, p, next_region, branch->ray.x, normal);
+                      opaque_radiance(medium, around, p, next_region, branch->ray.x, step->normal);
     return false;
   }
   const float eta_from = length(branch->ray.v);
@@ -165,8 +164,7 @@ static bool meet_surface(Path* path, const Medium* medium, const Surroundings* a
     return true;
   }
   if (++path->met > 8 * p->max_branches) return false;
-  const float3 normal = surface_normal(medium, step->surface, step->beyond);
-  split(path, normal, eta_from, eta_to, next_region, step->beyond, GRACE, p->min_weight,
+  split(path, step->normal, eta_from, eta_to, next_region, step->beyond, GRACE, p->min_weight,
         path->met <= p->max_branches ? STACK : 0);
   return colour_max(path->now.weight) >= p->min_weight;
 }

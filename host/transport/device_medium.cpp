@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "host/base/parallel.h"
+#include "host/transport/block_states.h"
 #include "host/transport/tile_values.h"
 
 namespace turbid {
@@ -14,9 +15,6 @@ namespace {
 
 constexpr int kTileEdge = TURBID_TILE_EDGE;
 constexpr int kTileNodes = TURBID_TILE_NODES;
-glm::ivec3 block_coordinates(int block, glm::ivec3 blocks) {
-  return {block % blocks.x, (block / blocks.x) % blocks.y, block / (blocks.x * blocks.y)};
-}
 
 /// Collects the tile maps of all sets and numbers the tiles of each kind.
 class TileMaps {
@@ -41,47 +39,6 @@ class TileMaps {
   int sets_ = 0;
   std::vector<int> map_;
 };
-
-/// For every block whether body r's surface may pass through it: by trilinear interpolation exactly where both signs occur;
-/// and where the block ends within the gap to another body that r touches.
-std::vector<int> classify(const MediumVolume& medium, int r) {
-  const glm::ivec3 blocks = medium.frame().blocks();
-  std::vector<int> state(blocks.x * blocks.y * blocks.z, TURBID_TILE_OUTSIDE);
-  parallel_ranges(static_cast<int>(state.size()), [&](int begin, int end) {
-    std::vector<float> nodes(kTileNodes);
-    for (int block = begin; block < end; ++block) {
-      medium.read_signed_distance(r, 8 * block_coordinates(block, blocks), glm::ivec3(kTileEdge), nodes);
-      const auto [low, high] = std::minmax_element(nodes.begin(), nodes.end());
-      state[block] = *low >= TURBID_TOUCH ? TURBID_TILE_OUTSIDE : *high < 0.0f ? TURBID_TILE_INSIDE : 0;
-    }
-  });
-  return state;
-}
-
-/// Blocks in which region r may own a point.
-std::vector<int> presence(int r, const std::vector<std::vector<int>>& body_state, int blocks) {
-  std::vector<int> result(blocks, TURBID_TILE_OUTSIDE);
-  for (int block = 0; block < blocks; ++block) {
-    bool present = r == 0 || body_state[r][block] != TURBID_TILE_OUTSIDE;
-    for (std::size_t higher = r + 1; higher < body_state.size(); ++higher) {
-      if (body_state[higher][block] == TURBID_TILE_INSIDE) present = false;
-    }
-    if (present) result[block] = 0;
-  }
-  return result;
-}
-
-std::vector<int> only_region(const std::vector<std::vector<int>>& body_state, int blocks) {
-  std::vector<int> result(blocks, 0);
-  for (int block = 0; block < blocks; ++block) {
-    for (int r = static_cast<int>(body_state.size()) - 1; r >= 1; --r) {
-      if (body_state[r][block] == TURBID_TILE_OUTSIDE) continue;
-      result[block] = body_state[r][block] == TURBID_TILE_INSIDE ? r : TURBID_MIXED_BLOCK;
-      break;
-    }
-  }
-  return result;
-}
 
 /// Calls fill(block, tile) for every block of the set that has a tile.
 template <class Fill>
@@ -144,8 +101,9 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
   const float h = device.frame.voxel_size;
   TileMaps maps(block_count);
   std::vector<std::vector<int>> body_state(regions);
-  for (int r = 1; r < regions; ++r) body_state[r] = classify(medium, r);
-  device.block_region = only_region(body_state, block_count);
+  std::vector<float> slope(block_count, 0.0f);
+  for (int r = 1; r < regions; ++r) body_state[r] = classify(medium, r, &slope);
+  device.block_region = only_region(body_state, slope);
   device.region_params.resize(regions);
 
   // Signed distances.
@@ -184,7 +142,8 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
       parallel_ranges(block_count, [&](int begin, int end) {
         std::vector<float> halo(halo_nodes(kIndexHalo));
         for (int block = begin; block < end; ++block) {
-          medium.read_eta(r, 8 * block_coordinates(block, blocks) - kIndexHalo, glm::ivec3(halo_edge(kIndexHalo)), halo);
+          medium.read_eta(r, 8 * block_coordinates(block, blocks) - kIndexHalo, glm::ivec3(halo_edge(kIndexHalo)),
+                          halo);
           const bool flat = std::all_of(halo.begin(), halo.end(), [&](float eta) { return eta == ambient; });
           if (flat) present[block] = TURBID_TILE_OUTSIDE;
         }
@@ -198,7 +157,8 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
   for (const auto& [r, set] : index_sets) {
     for_each_tile(maps, set, block_count, [&, reader = r](int block, int tile) {
       std::vector<float> halo(halo_nodes(kIndexHalo));
-      medium.read_eta(reader, 8 * block_coordinates(block, blocks) - kIndexHalo, glm::ivec3(halo_edge(kIndexHalo)), halo);
+      medium.read_eta(reader, 8 * block_coordinates(block, blocks) - kIndexHalo, glm::ivec3(halo_edge(kIndexHalo)),
+                      halo);
       for (float& eta : halo) eta = 0.5f * eta * eta;
       with_gradient<kIndexHalo>(halo, indices.data() + static_cast<std::size_t>(tile) * kTileNodes * 4);
     });

@@ -234,8 +234,7 @@ static void meet_surface(Path* path, const Medium* medium, Sinks* sinks, const M
     return;
   }
   ++sinks->interfaces;
-  const float3 normal = surface_normal(medium, step->surface, step->beyond);
-  const Interface surface = meet_interface(ray->v / eta_from, normal, eta_from, eta_to);
+  const Interface surface = meet_interface(ray->v / eta_from, step->normal, eta_from, eta_to);
   Ray reflected = *ray, refracted = *ray;
   reflected.v = eta_from * surface.reflected;
   refracted.v = eta_to * surface.refracted;

@@ -49,7 +49,7 @@ static ALWAYS_INLINE float16 __attribute__((overloadable)) load16(const global h
 typedef struct {
   const global RegionParams* regions;
   const global int* tile_map;          // [set][block]
-  const global int* block_region;      // [block]: the one region of the block, or TURBID_MIXED_BLOCK
+  const global int* block_region;      // [block]: the one region of the block; < 0: see TURBID_SLOPE_UNIT
   const global float* distance_tiles;  // [tile][node][4]
   const global TileNumber* index_tiles;  // [tile][node][4]
   const global TileNumber* coefficient_tiles;  // [tile][node][COEFFICIENT_WIDTH]
@@ -155,12 +155,13 @@ static float4 surface_at(const Medium* medium, int region, Cell cell) {
 // The body that stands last in the scene and holds the point, or 0, the ambient. Faces of two bodies that coincide leave
 // points that rounding puts in neither: the gap between bodies that touch belongs to the later one, so that a path goes from
 // one straight into the other.
-// `room`: as far as this [voxels] around the point, but within its block of cells, the region is the same: the derivatives of
-// an interpolated distance along the three axes are at most 1 each, so its gradient is at most sqrt(3).
+// `room`: as far as this [voxels] around the point, but within its block of cells, the region is the same, since no distance
+// changes faster there than the steepest slope.
 static int region_with_room(const Medium* medium, Cell cell, float* room) {
   *room = 1e9f;
   const int only = medium->block_region[cell.block];
-  if (only != TURBID_MIXED_BLOCK) return only;
+  if (only >= 0) return only;
+  const float per_distance = -1.0f / (TURBID_SLOPE_UNIT * only);
   float nearest = 1e9f;  // of the bodies passed over
   int nearest_region = 0;
   for (int region = TURBID_BODIES; region >= 1; --region) {
@@ -168,7 +169,7 @@ static int region_with_room(const Medium* medium, Cell cell, float* room) {
     if (tile == TURBID_TILE_INSIDE) return region;
     if (tile == TURBID_TILE_OUTSIDE) continue;
     const float signed_distance = interpolate4(medium->distance_tiles, tile, cell).w;
-    *room = fmin(*room, fmax(0.577f * (fabs(signed_distance) - TURBID_TOUCH), 0.0f));
+    *room = fmin(*room, fmax(per_distance * (fabs(signed_distance) - TURBID_TOUCH), 0.0f));
     if (signed_distance < 0.0f) return region;
     if (nearest + signed_distance < TURBID_TOUCH) return nearest_region;
     if (signed_distance < nearest) {

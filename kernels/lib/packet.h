@@ -23,7 +23,7 @@ typedef struct {
   LANE_ARRAY int block[LANES];  // < 0: to be looked up
   LANE_ARRAY int index_at[LANES], no_index[LANES], coefficients_at[LANES], no_coefficients[LANES], source_at[LANES],
       no_source[LANES];
-  LANE_ARRAY int only_region[LANES];  // the block's one region, or TURBID_MIXED_BLOCK
+  LANE_ARRAY int only_region[LANES];  // the block's one region; < 0: more may meet there
 } Packet;
 
 static void clear_lane(Packet* p, int lane) {

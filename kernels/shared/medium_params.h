@@ -13,7 +13,9 @@
 #define TURBID_TILE_OUTSIDE (-1)  // no tile; for signed distances: every point of the block is outside the body
 #define TURBID_TILE_INSIDE (-2)   // signed distances only: every point of the block is inside the body
 #define TURBID_TOUCH 0.01f  // two bodies with a gap narrower than this between them touch [voxels]
-#define TURBID_MIXED_BLOCK (-1)   // block_region: more than one region may meet in the block
+// block_region where more than one region may meet in the block: minus the steepest slope of the distances interpolated there, in
+// this unit and rounded up.
+#define TURBID_SLOPE_UNIT (1.0f / 64)
 
 #define TURBID_FACE_OPEN 0
 #define TURBID_FACE_MIRROR 1

@@ -206,23 +206,23 @@ class Session {
     march_->finish();
     return buffer;
   }
-  /// Blocking copies.
+  /// Blocking copies; those that don't block need `values` until the queue has finished.
   template <class T>
-  void write(Queue& queue, Buffer<T>& buffer, std::span<const T> values) {
+  void write(Queue& queue, Buffer<T>& buffer, std::span<const T> values, bool block = true) {
     if (values.empty()) return;
     Recording recording(queue, "write");
     recording.touches("to", values.size_bytes(), buffer.get());
-    check(clEnqueueWriteBuffer(queue.get(), buffer.get(), CL_TRUE, 0, values.size_bytes(), values.data(), 0, nullptr,
+    check(clEnqueueWriteBuffer(queue.get(), buffer.get(), block, 0, values.size_bytes(), values.data(), 0, nullptr,
                                recording.event()),
           "writing to the device");
     recording.finish();
   }
   template <class T>
-  void read(Queue& queue, const Buffer<T>& buffer, std::span<T> values) {
+  void read(Queue& queue, const Buffer<T>& buffer, std::span<T> values, bool block = true) {
     if (values.empty()) return;
     Recording recording(queue, "read");
     recording.touches("from", values.size_bytes(), buffer.get());
-    check(clEnqueueReadBuffer(queue.get(), buffer.get(), CL_TRUE, 0, values.size_bytes(), values.data(), 0, nullptr,
+    check(clEnqueueReadBuffer(queue.get(), buffer.get(), block, 0, values.size_bytes(), values.data(), 0, nullptr,
                               recording.event()),
           "reading from the device");
     recording.finish();

@@ -16,6 +16,7 @@ struct FieldKernel {
   const char* times;                    ///< ... unit of this integer argument; null: once
   std::vector<const char*> in_and_out;  ///< arguments that are both read and written
   const char* how;
+  std::vector<const char*> one_channel = {};  ///< arguments of which only one channel is touched
 };
 
 // One collision of a voxel's six populations (kernels/lib/collision.h).
@@ -25,6 +26,10 @@ constexpr const char* kCollisionCount =
 constexpr const char* kMeasuredCount = "the same, and 20 for fluence and sums";
 
 // A x of one voxel: six differences, products and sums, the diagonal's product: 20.
+constexpr const char* kSweepCount =
+    "per voxel, colour and sweep: six products and sums, b and the scaling (14); residual, interfaces and transfer "
+    "take what "
+    "sweeps from zero spare";
 const std::vector<FieldKernel>& field_kernels() {
   static const std::vector<FieldKernel> table{
       {"sweep",
@@ -39,21 +44,25 @@ const std::vector<FieldKernel>& field_kernels() {
       {"measure_crossing", "source", kMeasured, nullptr, {"slots", "fluence"}, kMeasuredCount},
       {"exchange", "lost", 6, nullptr, {}, "per face and colour: two weighted sums of two"},
       {"departures", "populations", 4, nullptr, {}, "per population: a compensated sum"},
-      {"smooth_down", "b", 13, "sweeps", {}, "per voxel, colour and sweep: six products and sums, the scaling"},
-      {"smooth_up", "b", 13, "sweeps", {}, "per voxel, colour and sweep: six products and sums, the scaling"},
-      {"coarse_cycle",
-       "b",
-       48,
+      {"settle", "sums", 1, nullptr, {}, "one sum"},
+      {"pack", "field", 0, nullptr, {}, "moved"},
+      {"unpack", "values", 1, nullptr, {}, "one product", {"field"}},
+      {"next_step",
+       "s",
+       27,
        nullptr,
-       {"b", "x", "y"},
-       "per voxel: four sweeps of 13 less the halves that start from zero"},
-      {"restrict_residual", "b", 22, nullptr, {}, "A x (20), its difference from b, the sum into the coarse voxel"},
-      {"apply", "x", 22, nullptr, {}, "A x (20) and its product with x, summed"},
-      {"advance_solution", "x", 5, nullptr, {"x", "r"}, "two scaled additions, one sum"},
-      {"true_residual", "x", 22, nullptr, {}, "A x (20), its difference from b, one sum"},
-      {"dot_product", "u", 2, nullptr, {}, "one product, one sum"},
-      {"next_direction", "p", 2, nullptr, {"p"}, "one product, one sum"},
-      {"scale", "x", 1, nullptr, {"x"}, "one product"},
+       {"x"},
+       "z + beta p and x + alpha p (2 each), A p (20), its product with p and both sums (3)",
+       {"conductance", "loss", "x"}},
+      {"last_step", "p", 4, nullptr, {"x"}, "x + alpha p, d x and its sum", {"loss", "x"}},
+      {"descend", "r", 14, "sweeps", {"r"}, kSweepCount, {"conductance", "inverse"}},
+      {"descend_coarse", "b", 14, "sweeps", {}, kSweepCount, {"conductance", "inverse"}},
+      {"ascend", "y", 14, "sweeps", {}, kSweepCount, {"conductance", "inverse"}},
+      {"ascend_coarse", "y", 14, "sweeps", {}, kSweepCount, {"conductance", "inverse"}},
+      {"coarse_cycle", "b", 28, "sweeps", {"b", "x", "y"}, "down and up", {"conductance", "inverse"}},
+      {"true_residual", "r", 22, nullptr, {}, "A x (20), its difference from b, one sum", {"conductance", "loss", "x"}},
+      {"dot_product", "w", 2, nullptr, {}, "one product, one sum", {"u"}},
+      {"scale", "x", 1, nullptr, {"x"}, "one product", {"x"}},
   };
   return table;
 }
@@ -105,14 +114,23 @@ KernelWork work_of(const std::vector<const cl::Command*>& launches, const RayWor
   const auto found = std::find_if(table.begin(), table.end(), [&](const FieldKernel& k) { return name == k.name; });
   if (found == table.end()) return work;
   for (const cl::Command* launch : launches) {
-    const double elements = static_cast<double>(launch->bytes_of(found->field)) / 4;
+    const auto one_channel = [&](const char* argument) {
+      return std::any_of(found->one_channel.begin(), found->one_channel.end(),
+                         [&](const std::string& name) { return name == argument; });
+    };
+    const double others = 1.0 - 1.0 / features.channels;
+    for (const char* argument : found->one_channel)
+      work.bytes -= others * static_cast<double>(launch->bytes_of(argument));
+    double elements = static_cast<double>(launch->bytes_of(found->field)) / 4;
+    if (one_channel(found->field)) elements /= features.channels;
     double times = 1;
     if (found->times) {
       const auto integer = launch->integers.find(found->times);
       times = integer == launch->integers.end() ? 0 : static_cast<double>(integer->second);
     }
     work.operations += elements * found->operations * times;
-    for (const char* argument : found->in_and_out) work.bytes += static_cast<double>(launch->bytes_of(argument));
+    for (const char* argument : found->in_and_out)
+      work.bytes += static_cast<double>(launch->bytes_of(argument)) * (one_channel(argument) ? 1.0 - others : 1.0);
   }
   work.counted = found->how;
   return work;

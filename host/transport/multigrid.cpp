@@ -12,7 +12,7 @@ namespace turbid {
 namespace {
 
 constexpr int kEdge = 8, kVoxels = 512;
-constexpr int kStep[3] = {1, kEdge, kEdge * kEdge};
+constexpr int kStep[3] = {1, kEdge, kEdge* kEdge};
 
 /// One channel of a level with boundary losses kept apart by face, as coarsening needs them.
 struct Operator {
@@ -68,7 +68,9 @@ struct CoarseMap {
   }
 };
 
-std::size_t flat(VoxelRef v) { return v.block * std::size_t{kVoxels} + v.voxel; }
+std::size_t flat(VoxelRef v) {
+  return v.block * std::size_t{kVoxels} + v.voxel;
+}
 
 Operator coarsen(const Operator& fine, const BlockGrid& fine_blocks, const BlockGrid& coarse_blocks) {
   Operator coarse(static_cast<std::size_t>(coarse_blocks.count()) * kVoxels);
@@ -109,33 +111,58 @@ Operator coarsen(const Operator& fine, const BlockGrid& fine_blocks, const Block
 }
 
 MultigridLevel empty_level(const BlockGrid& blocks, int channels) {
-  MultigridLevel level{.blocks = blocks, .conductance = {}, .loss = {}, .neighbours = {}, .parent = {}, .octant = {}};
+  MultigridLevel level{.blocks = blocks,
+                       .conductance = {},
+                       .loss = {},
+                       .inverse = {},
+                       .neighbours = {},
+                       .children = {},
+                       .parent = {},
+                       .octant = {}};
   level.conductance.assign(level.stride() * 3 * channels, 0.0f);
-  level.loss.assign(level.stride() * channels, 0.0f);
-  for (const auto& around : blocks.neighbours()) level.neighbours.insert(level.neighbours.end(), around.begin(), around.end());
+  level.inverse.assign(level.stride() * channels, 0.0f);
+  for (const auto& around : blocks.neighbours())
+    level.neighbours.insert(level.neighbours.end(), around.begin(), around.end());
   return level;
+}
+
+/// Of the face downwards; 0 where no voxel is below.
+float conductance_below(const Operator& from, const MultigridLevel& level, std::size_t i, int axis) {
+  const int voxel = static_cast<int>(i % kVoxels), step = kStep[axis];
+  if (voxel / step % kEdge > 0) return from.t[axis][i - step];
+  const std::size_t below = level.neighbours[6 * (i / kVoxels) + 2 * axis];
+  return below < static_cast<std::size_t>(level.blocks.count())
+             ? from.t[axis][below * kVoxels + voxel + (kEdge - 1) * step]
+             : 0.0f;
 }
 
 void store(MultigridLevel& level, const Operator& from, int channel) {
   const auto& place = packed_places();
-  float* loss = level.loss.data() + channel * level.stride();
+  float* loss = level.loss.empty() ? nullptr : level.loss.data() + channel * level.stride();
+  float* inverse = level.inverse.data() + channel * level.stride();
   float* conductance = level.conductance.data() + 3 * channel * level.stride();
   for (std::size_t i = 0; i < from.absorption.size(); ++i) {
     const std::size_t to = i - i % kVoxels + place[i % kVoxels];
-    for (int axis = 0; axis < 3; ++axis) conductance[axis * level.stride() + to] = from.t[axis][i];
     float sum = from.absorption[i];
     for (const auto& face : from.boundary) sum += face[i];
-    loss[to] = sum;
+    if (loss) loss[to] = sum;
+    for (int axis = 0; axis < 3; ++axis) {
+      conductance[axis * level.stride() + to] = from.t[axis][i];
+      sum += from.t[axis][i] + conductance_below(from, level, i, axis);
+    }
+    inverse[to] = sum > 0.0f ? 1.0f / sum : 0.0f;
   }
 }
 
-void link_to_parent(MultigridLevel& fine, const BlockGrid& coarse) {
+void link(MultigridLevel& fine, MultigridLevel& coarse) {
+  coarse.children.assign(8 * static_cast<std::size_t>(coarse.blocks.count()), fine.blocks.count());
   for (int block = 0; block < fine.blocks.count(); ++block) {
     const glm::ivec3 at = fine.blocks.coordinates(block);
-    fine.parent.push_back(coarse.find(at / 2));
+    fine.parent.push_back(coarse.blocks.find(at / 2));
     fine.octant.push_back((at.x & 1) + 2 * (at.y & 1) + 4 * (at.z & 1));
+    coarse.children[8 * fine.parent.back() + fine.octant.back()] = block;
   }
-  fine.parent.push_back(coarse.count());
+  fine.parent.push_back(coarse.blocks.count());
   fine.octant.push_back(0);
 }
 
@@ -155,11 +182,12 @@ const std::array<std::int16_t, 512>& packed_places() {
 std::vector<MultigridLevel> build_multigrid(const DiffusionMedium& medium) {
   std::vector<MultigridLevel> levels;
   levels.push_back(empty_level(medium.blocks, medium.channels));
+  levels[0].loss = levels[0].inverse;  // zeros
   glm::ivec3 extent = medium.frame.voxels;
   while (std::max({extent.x, extent.y, extent.z}) > 1) {
-    const BlockGrid next = coarse_blocks(levels.back().blocks);
-    link_to_parent(levels.back(), next);
-    levels.push_back(empty_level(next, medium.channels));
+    MultigridLevel next = empty_level(coarse_blocks(levels.back().blocks), medium.channels);
+    link(levels.back(), next);
+    levels.push_back(std::move(next));
     extent = (extent + 1) / 2;
   }
   const std::vector<float> conductance = face_conductances(medium);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Solves the lattice's steady state: conjugate gradients with a multigrid V-cycle (kernels/steady.cl).
+// Solves the lattice's steady state: conjugate gradients with a multigrid V-cycle (kernels/steady.cl), channel after
+// channel.
 #pragma once
 #include <array>
 #include <functional>
@@ -13,19 +14,25 @@
 namespace turbid {
 
 struct SteadyResult {
-  std::vector<float> u;          ///< fluence / eta^2 [W/voxel^2]: [channel][block][voxel], without the block of zeros
-  int iterations = 0;
-  double error_estimate = 0;     ///< relative error in the energy norm, of the iterate before the last
-  double residual_sum = 0;       ///< largest |sum of the true residual| / sum of the source over the channels
-  std::vector<std::array<double, 3>> gains;  ///< per iteration and channel: squared energy norm of what it added / that of u
+  std::vector<float> u;  ///< fluence / eta^2 [W/voxel^2]: [channel][block][voxel], without the block of zeros
+  int iterations = 0;    ///< of the channel that took most
+  /// Relative error in the energy norm, as the stopping test bounds it, of the worst channel.
+  double error_estimate = 0;
+  /// The same before the last iteration and without a margin.
+  double error_before_last = 0;
+  /// Largest |sum of the true residual| / sum of the source over the channels, which scaling u took off in the end.
+  double residual_sum = 0;
+  /// Per iteration and channel: squared energy norm of what it added / that of u.
+  std::vector<std::array<double, 3>> gains;
 };
 
 class SteadySolve {
  public:
   SteadySolve(cl::Session&, const DiffusionMedium&, const SteadySettings&);
-  /// q [W]: [channel][block][voxel]. `progress(fraction)` may throw to stop. A warm solve starts from the last answer, scaled
-  /// per channel to fit q best; it needs no iteration where that is good enough. Both starts lead to the same tolerance, but
-  /// only the cold one to the same bits whatever was solved before.
+  /// q [W]: [channel][block][voxel]. `progress(fraction)` may throw to stop. A warm solve starts from the last answer,
+  /// scaled per channel to fit q best; it needs no iteration where that is good enough. Both starts lead to the same
+  /// tolerance, but only the cold one to the same bits whatever was solved before. Each channel of u is scaled (by less
+  /// than the tolerance) so that as much is absorbed and escapes as q emits.
   SteadyResult solve(const std::vector<float>& q, bool warm = false, const std::function<void(double)>& progress = {});
   /// Device memory held [bytes].
   std::size_t device_bytes() const;
@@ -33,52 +40,75 @@ class SteadySolve {
  protected:
   using F = cl::Buffer<float>;
   using I = cl::Buffer<std::int32_t>;
-  using PerChannel = std::array<double, 3>;
 
+  /// Operators hold all channels, fields one.
   struct Level {
     int blocks = 0;
-    F conductance, loss, b, x, y;
-    I neighbours, parent, octant;
+    F conductance, inverse;
+    F b, x, y, handed;  ///< y in natural order but on the finest level
+    I neighbours, children, parent, octant;
   };
 
-  /// y = (preconditioner) b on level `index`; sums_ then hold b . y of that level.
-  void v_cycle(std::size_t index);
+  /// The finest level's y = (preconditioner) b, before which b takes up the step before `step` unless that is the
+  /// `first`; sums_ then hold b . y, and `step`'s scalars too.
+  void v_cycle(int step = 0, int first = 0);
+  /// out = A x, by the kernel that conjugate gradients use.
   void apply(const F& x, F& out);
-  void residual(const F& b, const F& x, F& r);
-  PerChannel channel_sums();
-  cl::Range blocks_by_channels(const Level& level) const {
-    return {static_cast<std::size_t>(level.blocks), static_cast<std::size_t>(channels_)};
-  }
-  void write_field(F& buffer, const std::vector<float>& values);
-  std::vector<float> read_field(const F& buffer);
+  /// Sum of what sums_ hold.
+  double block_sum();
+  cl::Range all_blocks(const Level& level) const { return {static_cast<std::size_t>(level.blocks), 1}; }
+  /// One channel, [block][voxel], into packed order; spoils next_p_. Neither this nor the next waits until `values` are
+  /// copied.
+  void write_field(F& buffer, std::span<const float> values);
+  /// The channel of a field of all that is being solved, times a factor; spoils next_p_.
+  void read_field(const F& buffer, float factor, std::span<float> values);
 
   cl::Session& session_;
   SteadySettings settings_;
   int channels_ = 3;
-  std::size_t stride_ = 0;
-  std::vector<Level> levels_;   ///< the last holds all levels of one block each: [level][channel][block, zeros][voxel]
+  int channel_ = 0;         ///< that is being solved
+  std::size_t stride_ = 0;  ///< voxels of a channel, without the block of zeros
+  /// The last holds all levels of one block each: [level](operators: [channel])[block, zeros][voxel].
+  std::vector<Level> levels_;
   int tail_levels_ = 0;
+  int padded_ = 0;  ///< blocks of the finest level, rounded up to a multiple of 16
 
  private:
-  PerChannel dot(const F& u, const F& v);
-  PerChannel start_from_last(const std::vector<float>& q);
-  void run_round(bool first, PerChannel total, PerChannel& energy, SteadyResult&, const std::function<void(double)>& progress);
-  void advance(const ChannelScalars& alpha);
+  struct Round;
+  void coarse_correction();
+  double dot_with_solution(const F& v);
+  void residual();
+  void start_from_last(std::span<const float> q, Round& round);
+  void step(const Round& round);
+  void settle(int at, int parts);
+  void look(Round& round);
+  void run_round(Round& round, const std::function<void(double)>& progress);
+  void finish_round(Round& round);
+  void solve_channel(std::span<const float> q, bool warm, SteadyResult&, std::span<float> u,
+                     const std::function<void(double)>& progress);
+  int turn() { return back_ = !back_; }
 
   cl::Program program_;
-  cl::Kernel<F, F, I, F, F, F, int, int> apply_;
+  cl::Kernel<F, F, int, int, int> settle_;
+  cl::Kernel<F, F, int> pack_;
+  cl::Kernel<F, F, float, int, int> unpack_;
+  cl::Kernel<F, F, I, F, F, F, F, F, F, F, int, int, int, int, int, int, int> next_step_;
+  cl::Kernel<F, F, F, F, float, int, int, int> last_step_;
   cl::Kernel<F, F, I, F, F, F, F, int, int> residual_;
-  cl::Kernel<F, F, I, F, F, int, int, int> smooth_down_;
-  cl::Kernel<F, F, I, F, F, F, I, I, F, F, int, int, int, int> smooth_up_;
-  cl::Kernel<F, F, I, F, F, I, I, F, int, int, int> restrict_;
-  cl::Kernel<F, F, I, I, I, F, F, F, int, int, int> coarse_cycle_;
-  cl::Kernel<F, F, F, F, F, ChannelScalars, int, int> advance_;
+  cl::Kernel<F, F, I, F, F, F, F, F, int, int, int, int, int, int> descend_;
+  cl::Kernel<F, F, I, I, I, F, F, F, F, int, int, int, int> descend_coarse_;
+  cl::Kernel<F, F, I, F, F, F, I, I, F, F, int, int, int, int> ascend_;
+  cl::Kernel<F, F, I, F, F, F, I, I, F, int, int, int> ascend_coarse_;
+  cl::Kernel<F, F, I, I, I, F, I, I, I, F, F, F, F, int, int, int, int, int> coarse_cycle_;
   cl::Kernel<F, F, F, int, int> dot_;
-  cl::Kernel<F, F, ChannelScalars, int, int> direction_;
-  cl::Kernel<F, ChannelScalars, int, int> scale_;
-  F solution_, p_, sums_;
-  std::vector<float> staging_;
+  cl::Kernel<F, float, int, int> scale_;
+  F loss_, solution_;  ///< of all channels
+  F p_, next_p_, sums_;
+  I only_child_;  ///< of levels of one block
+  F steps_;       ///< [step][TURBID_STEP]
+  std::vector<float> host_sums_, host_steps_;
   bool solved_ = false;
+  bool back_ = false;  ///< direction of the last kernel through the finest level
 };
 
 }  // namespace turbid

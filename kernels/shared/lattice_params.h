@@ -10,13 +10,11 @@
 #define TURBID_BLOCK_VOXELS 512
 
 // Place of voxel (x, y, z) of a block of 8^3 in the steady solver's order (kernels/lib/packed_block.h): by colours.
-#define TURBID_PACKED(x, y, z) (8 * (2 * (4 * (z) + ((y) >> 1)) + (((x) + (y) + (z)) & 1)) + 4 * ((y) & 1) + ((x) >> 1))
-
-// One number per colour channel (scalars of conjugate gradients).
-typedef struct {
-  float value[3];
-  float padding;
-} ChannelScalars;
-TURBID_ASSERT_SIZE(ChannelScalars, 16);
+#define TURBID_PACKED(x, y, z) \
+  (16 * (2 * (2 * (z) + ((y) >> 2)) + (((x) + (y) + (z)) & 1)) + 4 * ((y) & 3) + ((x) >> 1))
+// Floats that a block hands to the next coarser level (kernels/lib/block_smoother.h).
+#define TURBID_HANDED 160
+// Floats that a step of conjugate gradients leaves: r.z before it, p.A p, sum of A p, nothing.
+#define TURBID_STEP 4
 
 #endif

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <limits>
 
 #include "host/bench/figures.h"
@@ -75,11 +76,17 @@ std::vector<float> dense(const DeviceMedium& device, int set, const std::vector<
   return grid;
 }
 
+std::vector<float> floats_of(const std::vector<std::byte>& bytes) {
+  std::vector<float> values(bytes.size() / sizeof(float));
+  std::memcpy(values.data(), bytes.data(), bytes.size());
+  return values;
+}
+
 reference::RayMedium reference_medium(cl::Session& session, const DeviceMedium& device) {
   const RegionParams& region = device.region_params[0];
   reference::RayMedium medium;
   medium.n = device.frame.voxels.x;
-  medium.index = dense(device, region.index_set, session.read(session.march_queue(), device.index_tiles));
+  medium.index = dense(device, region.index_set, floats_of(session.read(session.march_queue(), device.index_tiles.bytes)));
   std::copy_n(region.sigma_s, 3, medium.sigma_s.begin());
   std::copy_n(region.sigma_a, 3, medium.sigma_a.begin());
   medium.tau_per_arc = region.tau_per_arc;

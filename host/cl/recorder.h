@@ -64,7 +64,6 @@ class Recorder {
   void stop();
   /// What the host does from now on; "" for nothing in particular.
   void stage(const std::string& name);
-  const std::string& current_stage() const { return stage_; }
 
   /// In the order in which they were enqueued; filled by stop().
   const std::vector<Command>& commands() const { return commands_; }

@@ -58,11 +58,11 @@ const std::vector<FieldKernel>& field_kernels() {
   return table;
 }
 
-/// One step of a ray. Trilinear interpolation of w values: 7 w interpolations of 3 operations from 8 w floats.
-KernelWork per_step(const SceneFeatures& f) {
+/// One step of a ray. Trilinear interpolation of w values: 7 w interpolations of 3 operations from 8 w numbers.
+KernelWork per_step(const RayWork& rays, const SceneFeatures& f) {
   KernelWork step{8, 60, {}};  // the block's region and a tile's number; locating, moving on, the domain's faces
   const auto interpolate = [&](double width, double times) {
-    step.bytes += times * 8 * width * 4;
+    step.bytes += times * 8 * width * rays.tile_bytes;
     step.operations += times * 7 * width * 3;
   };
   if (f.heterogeneous) interpolate(f.channels == 3 ? 8 : 2, 1);
@@ -72,7 +72,7 @@ KernelWork per_step(const SceneFeatures& f) {
 }
 
 KernelWork march_work(const RayWork& rays, const SceneFeatures& f) {
-  const KernelWork step = per_step(f);
+  const KernelWork step = per_step(rays, f);
   // A deposit reads and writes eight nodes of 8 bytes per colour; a ray's state is 80 bytes.
   return {rays.march_steps * step.bytes + rays.deposits * 8 * 8 * 2 * f.channels + rays.rays * 160,
           rays.march_steps * step.operations + rays.deposits * 8 * (2 + 2 * f.channels) + rays.interfaces * 60,
@@ -81,7 +81,7 @@ KernelWork march_work(const RayWork& rays, const SceneFeatures& f) {
 }
 
 KernelWork view_work(const RayWork& rays, const SceneFeatures& f) {
-  KernelWork step = per_step(f);
+  KernelWork step = per_step(rays, f);
   const double width = f.channels == 3 ? 4 : 1;
   if (f.scattering) {
     step.bytes += 8 * width * 4;

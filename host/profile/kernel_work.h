@@ -25,6 +25,7 @@ struct RayWork {
   double march_steps = 0, deposits = 0, interfaces = 0;
   double view_steps = 0;
   double rays = 0, samples = 0;
+  int tile_bytes = 4;           ///< of a number in the tiles of index and coefficients
 };
 
 /// Work of all of a frame's launches of one kernel.

@@ -174,7 +174,8 @@ Profile profile_scene(cl::Session& session, Scene scene, const ProfileSettings& 
                   .interfaces = static_cast<double>(profile.solver.march.interfaces),
                   .view_steps = static_cast<double>(view_steps),
                   .rays = static_cast<double>(profile.solver.rays),
-                  .samples = static_cast<double>(camera.width) * camera.height * camera.samples};
+                  .samples = static_cast<double>(camera.width) * camera.height * camera.samples,
+                  .tile_bytes = on_grid->scene.solver.march.storage == Storage::half_precision ? 2 : 4};
   for (const CommandKey& key : keys_of(frames.front()))
     profile.commands.push_back(profile_command(key, frames, profile.rays, on_grid->features));
   profile.stages = profile_stages(frames);

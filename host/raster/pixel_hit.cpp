@@ -12,16 +12,24 @@ Corners corners_of(const TriangleMesh& mesh, std::size_t triangle) {
   return {glm::dvec3(mesh.positions[t.x]), glm::dvec3(mesh.positions[t.y]), glm::dvec3(mesh.positions[t.z])};
 }
 
-PixelRays::PixelRays(const RasterView& view)
-    : to_world_(glm::inverse(glm::dmat4(view.projection) * glm::dmat4(view.view))),
-      width_(view.width),
-      height_(view.height) {}
+PixelRays::PixelRays(const RasterView& view) {
+  const glm::dmat4 to_world = glm::inverse(glm::dmat4(view.projection) * glm::dmat4(view.view));
+  const auto plane_at = [&](double depth) {
+    const auto point = [&](double x, double y) {
+      const glm::dvec4 p = to_world * glm::dvec4(2.0 * x / view.width - 1.0, 1.0 - 2.0 * y / view.height, depth, 1.0);
+      return glm::dvec3(p) / p.w;
+    };
+    const glm::dvec3 left_top = point(0, 0), right = (point(view.width, 0) - left_top) / double(view.width),
+                     down = (point(0, view.height) - left_top) / double(view.height);
+    return Plane{left_top + 0.5 * (right + down), right, down};
+  };
+  near_ = plane_at(-1.0);
+  far_ = plane_at(1.0);
+}
 
 Ray PixelRays::at(int x, int y) const {
-  const double cx = (2.0 * x + 1.0) / width_ - 1.0, cy = 1.0 - (2.0 * y + 1.0) / height_;
-  const glm::dvec4 a = to_world_ * glm::dvec4(cx, cy, -1.0, 1.0), b = to_world_ * glm::dvec4(cx, cy, 1.0, 1.0);
-  const glm::dvec3 from = glm::dvec3(a) / a.w;
-  return {from, glm::normalize(glm::dvec3(b) / b.w - from)};
+  const glm::dvec3 from = near_.at(x, y);
+  return {from, glm::normalize(far_.at(x, y) - from)};
 }
 
 bool faces(const Ray& ray, const Corners& p) {

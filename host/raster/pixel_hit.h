@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ray through a pixel's centre and where it meets a triangle, in double. Internal to host/raster.
+// The ray through a pixel's centre and where it meets a triangle, in double.
 #pragma once
 #include <array>
 #include <glm/glm.hpp>
@@ -21,14 +21,21 @@ struct Hit {
   glm::dvec3 barycentric{0};
 };
 
+/// Rays through the centres of pixels.
 class PixelRays {
  public:
   explicit PixelRays(const RasterView&);
   Ray at(int x, int y) const;  ///< (0, 0) is the top left pixel
+  /// Where the ray leaves the view.
+  glm::dvec3 far_point(int x, int y) const { return far_.at(x, y); }
 
  private:
-  glm::dmat4 to_world_;
-  double width_, height_;
+  /// Points of a plane of constant depth: a projection maps its pixels to the world by an affine map.
+  struct Plane {
+    glm::dvec3 corner, right, down;  ///< pixel (0, 0), and from a pixel to the next
+    glm::dvec3 at(int x, int y) const { return corner + double(x) * right + double(y) * down; }
+  };
+  Plane near_, far_;
 };
 
 /// Whether the ray comes from the triangle's outside.

@@ -62,13 +62,17 @@ void draw_all(NumberTarget& target, const TriangleTable& table, const glm::dmat4
   std::vector<glm::vec4> points, corners;
   for (std::size_t i = 0; i < table.meshes.size(); ++i) {
     const TriangleMesh& mesh = *table.meshes[i].mesh;
-    points.clear();
-    for (const glm::vec3& p : mesh.positions) points.emplace_back(to_clip * glm::dvec4(p, 1.0));
+    points.resize(mesh.positions.size());
+    parallel_ranges(static_cast<int>(points.size()), [&](int first, int last) {
+      for (int p = first; p < last; ++p) points[p] = glm::vec4(to_clip * glm::dvec4(mesh.positions[p], 1.0));
+    });
     for (std::size_t begin = 0; begin < mesh.triangles.size(); begin += kBatch) {
       const std::size_t end = std::min(begin + kBatch, mesh.triangles.size());
-      corners.clear();
-      for (std::size_t t = begin; t < end; ++t)
-        for (int k = 0; k < 3; ++k) corners.push_back(points[mesh.triangles[t][k]]);
+      corners.resize(3 * (end - begin));
+      parallel_ranges(static_cast<int>(end - begin), [&](int first, int last) {
+        for (int t = first; t < last; ++t)
+          for (int k = 0; k < 3; ++k) corners[3 * static_cast<std::size_t>(t) + k] = points[mesh.triangles[begin + t][k]];
+      });
       target.draw({&corners[0].x, 4 * corners.size()}, table.first[i] + static_cast<std::uint32_t>(begin));
     }
   }

@@ -106,6 +106,7 @@ std::string report_json(const RunReport& r) {
               {"march_batches", s.march_batches},
               {"iterations", s.iterations},
               {"error_estimate", s.error_estimate},
+              {"storage_error", s.storage_error},
               {"active_blocks", s.active_blocks},
               {"active_voxels", s.active_voxels},
               {"diffusion_bytes", s.diffusion_bytes}}},

@@ -70,8 +70,10 @@ std::string report_text(const RunReport& r, bool brief) {
     text += line("solver     photon: %s photons in %d batches, mean relative standard error of the fluence %.2g\n",
                  with_commas(s.photon->photons).c_str(), s.photon->batches, s.error_estimate);
   } else {
-    text += line("solver     %s: %s rays in %d batches, %d iterations, solved to %.2g\n", s.solver.c_str(),
+    text += line("solver     %s: %s rays in %d batches, %d iterations, solved to %.2g", s.solver.c_str(),
                  with_commas(s.rays).c_str(), s.march_batches, s.iterations, s.error_estimate);
+    if (s.storage_error > 0) text += line(", stored to %.2g", s.storage_error);
+    text += "\n";
   }
   if (!r.chosen.empty()) text += "chosen     " + r.chosen + "\n";
   if (r.error) text += error_table(*r.error);

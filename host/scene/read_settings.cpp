@@ -96,13 +96,10 @@ void read_settings(Reading& reading, const toml::table& root) {
       {{"off", EstimateEffort::off}, {"quick", EstimateEffort::quick}, {"full", EstimateEffort::full}}, "quick");
   const Storage storage = solver.choice<Storage>(
       "storage", {{"float", Storage::single_precision}, {"half", Storage::half_precision}}, "float");
-  if (storage == Storage::half_precision && s.solver != "lattice") {
-    solver.fail("storage", "\"half\" is for the populations of solver \"lattice\", found name = \"" + s.solver + "\"");
-  }
   s.march = read_march({sub_table(solver, "march"), "[solver.march]", effective.section("[solver.march]")});
   s.lattice = read_lattice({sub_table(solver, "lattice"), "[solver.lattice]", effective.section("[solver.lattice]")},
                            tolerance);
-  s.lattice.storage = storage;
+  s.march.storage = s.lattice.storage = storage;
   s.steady =
       read_steady({sub_table(solver, "steady"), "[solver.steady]", effective.section("[solver.steady]")}, tolerance);
   s.photon = read_photon({sub_table(solver, "photon"), "[solver.photon]", effective.section("[solver.photon]")});

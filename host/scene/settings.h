@@ -6,24 +6,28 @@
 
 namespace turbid {
 
+/// How the medium that rays read (index and coefficients, not the signed distances) and the lattice's populations are kept,
+/// scene key [solver] storage. Arithmetic is single precision either way; solver "photon", the reference, keeps all in single
+/// precision.
+enum class Storage {
+  single_precision,  ///< "float"
+  half_precision,    ///< "half": half the memory. The medium is rounded to nearest (what that took is in the run's error).
+                     ///< What rounding takes from a voxel's populations waits there and is not lost, but the fluence
+                     ///< keeps an error (kHalfError, lattice_scheme.h), which grows where it is far below the brightest source
+};
+
 struct MarchSettings {
   float step_in_voxels = 0.5f;      ///< arc length of one step / voxel size [-], in (0, 2]
   float rays_per_face = 4.0f;       ///< light rays per voxel face where they enter [-], in (0, 64]
   int max_steps = 4096;             ///< a ray still inside after this many steps is reported as in flight; >= 1
   int batch_steps = 256;            ///< steps k of one batch (Bernabei et al. III-B); >= 1
   int workers = 0;                  ///< work-items that take rays where the device is a CPU, 0: one per core; in [0, 4096]
+  Storage storage = Storage::single_precision;  ///< of the medium
   int max_bounces = 16;             ///< interfaces that one path may meet; what is left then is reported as in flight
   float min_power = 1e-4f;          ///< a branch weaker than this fraction of its ray's first power ends [-], in [0, 0.1]
 };
 
 enum class CollisionVariant { paper, exponential, trapezoid, trt };
-
-/// How the lattice keeps its populations. Arithmetic is single precision either way.
-enum class Storage {
-  single_precision,  ///< "float"
-  half_precision,    ///< "half": half the memory. What rounding takes from a voxel waits there and is not lost, but the fluence
-                     ///< keeps an error (kHalfError, lattice_scheme.h), which grows where it is far below the brightest source
-};
 
 struct LatticeSettings {
   CollisionVariant collision = CollisionVariant::trt;
@@ -32,7 +36,7 @@ struct LatticeSettings {
   int sweeps_per_batch = 4;         ///< exchanges (global: steps) while the next batch of rays marches; >= 0
   int max_sweeps = 20000;           ///< exchanges (global: steps) at the most; >= 1
   float tolerance = 1e-4f;          ///< estimated relative error of the fluence, in [1e-6, 0.1]
-  Storage storage = Storage::single_precision;  ///< scene key [solver] storage = "float" or "half"
+  Storage storage = Storage::single_precision;  ///< of the populations
 };
 
 struct SteadySettings {

@@ -76,7 +76,7 @@ std::optional<ErrorEstimate> estimate_error(cl::Session& session, const SceneOnG
     const double scattered = companion.scattered();
     fluence.steps = kSteps * first * step * step;
     fluence.rays = kRays * first / rays;
-    fluence.solve = solution.report.error_estimate;
+    fluence.solve = solution.report.error_estimate + solution.report.storage_error;
     image = {0, scattered * fluence.steps + kViewSteps, scattered * fluence.rays, scattered * fluence.solve, 0};
     if (const std::optional<Difference> difference = companion.coarser()) {
       fluence.grid = kGrid * difference->fluence;

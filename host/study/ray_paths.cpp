@@ -43,9 +43,9 @@ DeviceMedium graded_domain(cl::Session& session, glm::ivec3 voxels,
   device.regions_buffer = session.upload(device.region_params);
   device.tile_map_buffer = session.upload(device.tile_map);
   device.block_region_buffer = session.upload(device.block_region);
-  device.index_tiles = session.upload(tiles);
+  device.index_tiles = store_tiles(session, tiles, device.storage);
   device.distance_tiles = session.upload(std::vector<float>(8));
-  device.coefficient_tiles = session.upload(std::vector<float>(8));
+  device.coefficient_tiles = store_tiles(session, std::vector<float>(8), device.storage);
   return device;
 }
 
@@ -54,7 +54,8 @@ std::vector<PathRay> trace(cl::Session& session, const DeviceMedium& medium, con
   using F = cl::Buffer<float>;
   using I = cl::Buffer<int>;
   const cl::Program program = session.build("path.cl", medium.defines());
-  cl::Kernel<cl::Buffer<RegionParams>, I, I, F, F, F, F, float, int, int> kernel(program, "follow_path");
+  using Bytes = cl::Buffer<std::byte>;
+  cl::Kernel<cl::Buffer<RegionParams>, I, I, F, Bytes, Bytes, F, float, int, int> kernel(program, "follow_path");
   std::vector<float> packed;
   for (const PathRay& ray : rays) {
     packed.insert(packed.end(), {ray.x.x, ray.x.y, ray.x.z, ray.v.x, ray.v.y, ray.v.z, static_cast<float>(ray.region),
@@ -62,7 +63,7 @@ std::vector<PathRay> trace(cl::Session& session, const DeviceMedium& medium, con
   }
   F buffer = session.upload(packed);
   kernel.enqueue(session.march_queue(), {rays.size()}, {1}, medium.regions_buffer, medium.tile_map_buffer,
-                 medium.block_region_buffer, medium.distance_tiles, medium.index_tiles, medium.coefficient_tiles,
+                 medium.block_region_buffer, medium.distance_tiles, medium.index_tiles.bytes, medium.coefficient_tiles.bytes,
                  buffer, step, steps, static_cast<int>(rays.size()));
   const std::vector<float> out = session.read(session.march_queue(), buffer);
   std::vector<PathRay> result(rays.size());

@@ -8,41 +8,13 @@
 
 #include "host/base/parallel.h"
 #include "host/transport/block_states.h"
+#include "host/transport/tile_values.h"
 
 namespace turbid {
 namespace {
 
 constexpr int kTileEdge = TURBID_TILE_EDGE;
 constexpr int kTileNodes = TURBID_TILE_NODES;
-/// Nodes of a tile with `halo` more on each side.
-constexpr int halo_edge(int halo) {
-  return kTileEdge + 2 * halo;
-}
-constexpr int halo_nodes(int halo) {
-  return halo_edge(halo) * halo_edge(halo) * halo_edge(halo);
-}
-constexpr int kDistanceHalo = 1, kIndexHalo = 2;
-
-/// (gradient, value) per node from values with a halo, by central differences of second order (halo 1) or fourth (halo
-/// 2). Second order adds h^2/6 (u_xxx, u_yyy, u_zzz) to the gradient, which is no gradient of anything: rays of
-/// different directions then have different speeds at one place, and power is not kept along them.
-template <int halo>
-void with_gradient(const std::vector<float>& values, float* out) {
-  constexpr int edge = halo_edge(halo), strides[3] = {1, edge, edge * edge};
-  for (int z = halo; z < halo + kTileEdge; ++z) {
-    for (int y = halo; y < halo + kTileEdge; ++y) {
-      for (int x = halo; x < halo + kTileEdge; ++x, out += 4) {
-        const float* at = values.data() + x + edge * (y + edge * z);
-        for (int axis = 0; axis < 3; ++axis) {
-          const int d = strides[axis];
-          out[axis] = 0.5f * (at[d] - at[-d]);
-          if constexpr (halo == 2) out[axis] = (4.0f * out[axis] - 0.25f * (at[2 * d] - at[-2 * d])) / 3.0f;
-        }
-        out[3] = at[0];
-      }
-    }
-  }
-}
 
 /// Collects the tile maps of all sets and numbers the tiles of each kind.
 class TileMaps {
@@ -105,14 +77,22 @@ std::vector<float> room_for(int tiles, bool read, int width) {
 }  // namespace
 
 std::vector<cl::Define> DeviceMedium::defines() const {
-  return {{"TURBID_CHANNELS", features.channels},     {"TURBID_BODIES", features.bodies},
-          {"TURBID_GRADED", features.graded_index},   {"TURBID_HETEROGENEOUS", features.heterogeneous},
-          {"TURBID_SCATTERING", features.scattering}, {"TURBID_VOXELS_X", frame.voxels.x},
-          {"TURBID_VOXELS_Y", frame.voxels.y},        {"TURBID_VOXELS_Z", frame.voxels.z}};
+  return {{"TURBID_CHANNELS", features.channels},
+          {"TURBID_BODIES", features.bodies},
+          {"TURBID_GRADED", features.graded_index},
+          {"TURBID_HETEROGENEOUS", features.heterogeneous},
+          {"TURBID_SCATTERING", features.scattering},
+          {"TURBID_HALF_TILES", storage == Storage::half_precision},
+          {"TURBID_INDEX_EXPONENT", index_tiles.exponent},
+          {"TURBID_COEFFICIENT_EXPONENT", coefficient_tiles.exponent},
+          {"TURBID_VOXELS_X", frame.voxels.x},
+          {"TURBID_VOXELS_Y", frame.voxels.y},
+          {"TURBID_VOXELS_Z", frame.voxels.z}};
 }
 
-DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, const SceneFeatures& features) {
+DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, const SceneFeatures& features, Storage storage) {
   DeviceMedium device;
+  device.storage = storage;
   device.frame = medium.frame();
   device.features = features;
   const glm::ivec3 blocks = device.frame.blocks();
@@ -255,8 +235,8 @@ DeviceMedium upload_medium(cl::Session& session, const MediumVolume& medium, con
   device.region_tiles = session.upload(region_tiles(device));
   device.block_region_buffer = session.upload(device.block_region);
   device.distance_tiles = session.upload(distances);
-  device.index_tiles = session.upload(indices);
-  device.coefficient_tiles = session.upload(coefficients);
+  device.index_tiles = store_tiles(session, indices, storage);
+  device.coefficient_tiles = store_tiles(session, coefficients, storage);
   return device;
 }
 

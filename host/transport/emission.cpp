@@ -31,6 +31,7 @@ void weigh_emission(DiffusionMedium& out, const MediumVolume& medium, int first_
     for (int c = 0; at >= 0 && c < out.channels; ++c)
       out.emission[c * out.stride() + static_cast<std::size_t>(at)] = 0.0f;
   }
+  std::vector<NearVoxel> nearest;
   for (const EmittingPart& part : cut.parts) {
     const auto give = [&](std::size_t at, float share) {
       for (int c = 0; c < out.channels; ++c)
@@ -41,7 +42,8 @@ void weigh_emission(DiffusionMedium& out, const MediumVolume& medium, int first_
       give(static_cast<std::size_t>(own), 1.0f);
       continue;
     }
-    for (const NearVoxel& near : nearest_voxels(out, part.voxel, part.region)) give(near.at, near.weight);
+    find_nearest_voxels(out, part.voxel, part.region, nearest);
+    for (const NearVoxel& near : nearest) give(near.at, near.weight);
   }
 }
 

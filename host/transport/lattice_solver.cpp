@@ -38,7 +38,7 @@ DiffuseLight LatticeSolver::diffuse(const LightSource& source) {
   lattice_->set_source(source.power);
   DiffuseLight light;
   light.error_estimate = lattice_->relax([&](double fraction) { context_.progress.update(fraction); });
-  if (context_.settings.lattice.storage == Storage::half_precision) light.error_estimate += kHalfError;
+  if (context_.settings.lattice.storage == Storage::half_precision) light.storage_error = kHalfError;
   light.iterations = lattice_->sweeps();
   light.fluence = lattice_->read_fluence();
   const LatticeEnergy energy = lattice_->read_energy();

@@ -9,22 +9,15 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-#include <numeric>
 
 #include "host/transport/parallel_texels.h"
+#include "host/transport/ray_order.h"
 
 namespace turbid {
 namespace {
 
 constexpr float kPi = glm::pi<float>();
 constexpr int kLargestMap = 4096;
-
-/// Radical inverse of a counter: offsets of the ray grid for different seeds, in [0, 1).
-float radical_inverse(std::uint64_t n, unsigned base) {
-  double result = 0, digit = 1.0 / base;
-  for (; n > 0; n /= base, digit /= base) result += digit * static_cast<double>(n % base);
-  return static_cast<float>(result);
-}
 
 class RayStarter {
  public:
@@ -53,27 +46,11 @@ class RayStarter {
 
   LightRays take() {
     result_.missed = result_.emitted - carried_ - result_.absorbed_opaque;
-    sort_by_block();
+    result_.rays = sorted_by_block(result_.rays, frame_);
     return std::move(result_);
   }
 
  private:
-  /// Rays that start in one block of voxels follow each other: they meet the same tiles of the medium and of the deposits.
-  void sort_by_block() {
-    const glm::ivec3 blocks = frame_.blocks();
-    const auto block_of = [&](const RayState& ray) {
-      const glm::ivec3 voxel(ray.position[0], ray.position[1], ray.position[2]);
-      const glm::ivec3 block = glm::clamp(voxel / 8, glm::ivec3(0), blocks - 1);
-      return block.x + blocks.x * (block.y + blocks.y * block.z);
-    };
-    std::vector<std::size_t> next(static_cast<std::size_t>(blocks.x) * blocks.y * blocks.z + 1);
-    for (const RayState& ray : result_.rays) ++next[block_of(ray) + 1];
-    std::partial_sum(next.begin(), next.end(), next.begin());
-    std::vector<RayState> sorted(result_.rays.size());
-    for (const RayState& ray : result_.rays) sorted[next[block_of(ray)]++] = ray;
-    result_.rays = std::move(sorted);
-  }
-
   /// -1: outside the domain.
   int region_of(glm::vec3 position) const {
     const glm::ivec3 voxel(glm::floor((position - frame_.origin) / frame_.voxel_size));

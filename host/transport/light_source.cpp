@@ -59,7 +59,8 @@ class Gathering {
     // the tiles, before anything is rounded. All others are the tile's own.
     std::vector<Spread> spreads(device_.source_tiles.size());
     parallel_ranges(static_cast<int>(spreads.size()), [&](int begin, int end) {
-      for (int tile = begin; tile < end; ++tile) gather(tile, spreads[tile]);
+      std::vector<NearVoxel> targets;  // of the node at hand
+      for (int tile = begin; tile < end; ++tile) gather(tile, spreads[tile], targets);
     });
     for (const Spread& spread : spreads) {
       for (const Spread::Power& power : spread.powers) {
@@ -82,7 +83,7 @@ class Gathering {
   }
 
  private:
-  void gather(std::size_t tile, Spread& spread) {
+  void gather(std::size_t tile, Spread& spread, std::vector<NearVoxel>& targets) {
     const SourceTile& where = device_.source_tiles[tile];
     // The blocks of voxels that the tile's nodes lie in.
     int blocks[8];
@@ -104,7 +105,7 @@ class Gathering {
           const int corner = inside.x / kEdge + 2 * (inside.y / kEdge) + 4 * (inside.z / kEdge);
           const std::size_t at = std::max(blocks[corner], 0) * std::size_t{kVoxels} + local.x + kEdge * (local.y + kEdge * local.z);
           if (blocks[corner] < 0 || medium_.region[at] != where.region) {
-            spread_node(lower + inside, where.region, node, watts, spread);
+            spread_node(lower + inside, where.region, node, watts, spread, targets);
           } else if (x < kEdge && y < kEdge && z < kEdge) {
             for (int c = 0; c < channels_; ++c) own_[c * stride_ + at] += watts[c];
             if (moments_) add_moment({at, node, 1});
@@ -118,8 +119,9 @@ class Gathering {
   }
 
   /// A node outside the region's own voxels.
-  void spread_node(glm::ivec3 voxel, int region, std::size_t node, glm::dvec3 watts, Spread& spread) const {
-    const std::vector<NearVoxel> targets = nearest_voxels(medium_, voxel, region);
+  void spread_node(glm::ivec3 voxel, int region, std::size_t node, glm::dvec3 watts, Spread& spread,
+                   std::vector<NearVoxel>& targets) const {
+    find_nearest_voxels(medium_, voxel, region, targets);
     if (targets.empty()) spread.unresolved += watts;
     for (const NearVoxel& target : targets) {
       if (moments_) spread.moments.push_back({target.at, node, target.weight});

@@ -118,8 +118,8 @@ void March::enqueue_piece() {
   const std::size_t rays = params_.end_ray - params_.first_ray;
   const std::size_t items = device.cpu ? workers_ : rays;
   kernel_.enqueue(queue, {items}, {device.cpu ? std::size_t{1} : std::size_t{64}}, medium_.regions_buffer,
-                  medium_.tile_map_buffer, medium_.block_region_buffer, medium_.distance_tiles, medium_.index_tiles,
-                  medium_.coefficient_tiles, medium_.region_tiles, params_, rays_, next_, next_count_, claims_,
+                  medium_.tile_map_buffer, medium_.block_region_buffer, medium_.distance_tiles, medium_.index_tiles.bytes,
+                  medium_.coefficient_tiles.bytes, medium_.region_tiles, params_, rays_, next_, next_count_, claims_,
                   volumes_ > 0 ? own_sums_ : deposit_, flux_, tallies_, ground_, ground_rays_, transmitted_);
   cl::check(clFlush(queue.get()), "starting the march");
 }

@@ -52,8 +52,8 @@ class March {
   MarchSettings settings_;
   MarchParams params_{};
   cl::Program program_;
-  cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>,
-             cl::Buffer<float>, cl::Buffer<int>, MarchParams, cl::Buffer<RayState>, cl::Buffer<RayState>, cl::Buffer<int>,
+  cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<std::byte>,
+             cl::Buffer<std::byte>, cl::Buffer<int>, MarchParams, cl::Buffer<RayState>, cl::Buffer<RayState>, cl::Buffer<int>,
              cl::Buffer<int>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>,
              cl::Buffer<std::int64_t>, cl::Buffer<int>, cl::Buffer<std::int64_t>>
       kernel_;

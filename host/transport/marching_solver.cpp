@@ -61,7 +61,7 @@ void MarchingSolver::prepare(const MediumVolume& medium) {
   medium_ = &medium;
   march_.reset();
   context_.progress.stage("upload");
-  device_ = std::make_shared<const DeviceMedium>(upload_medium(context_.session, medium, context_.features));
+  device_ = std::make_shared<const DeviceMedium>(upload_medium(context_.session, medium, context_.features, context_.settings.march.storage));
   surfaces_.emplace(entry_surfaces(context_.description, medium, false));
   context_.progress.stage("prepare");
   diffusion_.emplace(make_diffusion_medium(medium, context_.features.channels, context_.features.first_colour()));
@@ -119,6 +119,7 @@ LightSolution MarchingSolver::light(const LightList& lights) {
   report.march = tallies.work;
   report.iterations = diffuse_light.iterations;
   report.error_estimate = diffuse_light.error_estimate;
+  report.storage_error = diffuse_light.storage_error + device_->storage_error();
   report.active_blocks = diffusion.blocks.count();
   report.active_voxels = diffusion.active_voxels;
   report.diffusion_bytes = diffusion_bytes();

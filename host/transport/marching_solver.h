@@ -23,6 +23,7 @@ struct DiffuseLight {
   glm::dvec3 rounding{0};           ///< taken by half-precision storage (lattice only)
   int iterations = 0;
   double error_estimate = 0;
+  double storage_error = 0;         ///< of the fluence, by half-precision storage (lattice only)
 };
 
 class MarchingSolver : public TransportSolver {

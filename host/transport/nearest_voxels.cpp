@@ -7,8 +7,7 @@ namespace {
 
 constexpr int kEdge = 8, kReach = 3;
 
-std::vector<NearVoxel> within(const DiffusionMedium& medium, glm::ivec3 voxel, int region, int reach) {
-  std::vector<NearVoxel> found;
+void find_within(const DiffusionMedium& medium, glm::ivec3 voxel, int region, int reach, std::vector<NearVoxel>& found) {
   for (int dz = -reach; dz <= reach; ++dz) {
     for (int dy = -reach; dy <= reach; ++dy) {
       for (int dx = -reach; dx <= reach; ++dx) {
@@ -20,7 +19,6 @@ std::vector<NearVoxel> within(const DiffusionMedium& medium, glm::ivec3 voxel, i
       }
     }
   }
-  return found;
 }
 
 }  // namespace
@@ -34,13 +32,12 @@ std::int64_t active_voxel(const DiffusionMedium& medium, glm::ivec3 voxel) {
   return block * std::int64_t{512} + local.x + kEdge * (local.y + kEdge * local.z);
 }
 
-std::vector<NearVoxel> nearest_voxels(const DiffusionMedium& medium, glm::ivec3 voxel, int region) {
-  std::vector<NearVoxel> found;
-  for (int reach = 1; found.empty() && reach <= kReach; ++reach) found = within(medium, voxel, region, reach);
+void find_nearest_voxels(const DiffusionMedium& medium, glm::ivec3 voxel, int region, std::vector<NearVoxel>& found) {
+  found.clear();
+  for (int reach = 1; found.empty() && reach <= kReach; ++reach) find_within(medium, voxel, region, reach, found);
   double total = 0;
   for (const NearVoxel& near : found) total += near.weight;
   for (NearVoxel& near : found) near.weight = static_cast<float>(near.weight / total);
-  return found;
 }
 
 }  // namespace turbid

@@ -15,8 +15,8 @@ struct NearVoxel {
   float weight;       ///< of all that were found the sum is 1
   glm::ivec3 offset;  ///< of the voxel asked for from this one [voxels]
 };
-/// Voxels of the region around `voxel`, those next to it or, if there are none, within two or three voxels; by inverse
-/// square distance.
-std::vector<NearVoxel> nearest_voxels(const DiffusionMedium&, glm::ivec3 voxel, int region);
+/// Puts into `found`, whose room is used again, the voxels of the region around `voxel`, those next to it or, if there are
+/// none, within two or three voxels; by inverse square distance.
+void find_nearest_voxels(const DiffusionMedium&, glm::ivec3 voxel, int region, std::vector<NearVoxel>& found);
 
 }  // namespace turbid

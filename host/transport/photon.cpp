@@ -92,7 +92,7 @@ void Photons::follow(const PhotonStretch& stretch) {
   params.channel = stretch.channel;
   cl::Queue& queue = session_.march_queue();
   kernel_.enqueue(queue, {static_cast<std::size_t>(std::min(stretch.count, kItems))}, {64}, device_.regions_buffer,
-                  device_.tile_map_buffer, device_.block_region_buffer, device_.distance_tiles, device_.index_tiles,
+                  device_.tile_map_buffer, device_.block_region_buffer, device_.distance_tiles, device_.index_tiles.bytes,
                   medium_.coefficients, params, medium_.regions_buffer, sources_, cumulative_, medium_.majorants,
                   medium_.block_index, medium_.owner, voxels_, tallies_, ground_, ground_rays_);
   queue.finish();

@@ -55,7 +55,7 @@ class Photons {
   PhotonParams params_{};
   std::uint64_t sources_fingerprint_ = 0;
   cl::Program program_;
-  cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>, cl::Buffer<float>,
+  cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<std::byte>, cl::Buffer<float>,
              PhotonParams, cl::Buffer<PhotonRegion>, cl::Buffer<PhotonSource>, cl::Buffer<std::uint64_t>, cl::Buffer<float>,
              cl::Buffer<int>, cl::Buffer<std::int16_t>, cl::Buffer<std::int64_t>, cl::Buffer<std::int64_t>,
              cl::Buffer<std::int64_t>, cl::Buffer<std::int32_t>>

@@ -156,7 +156,7 @@ PhotonMedium upload_photon_medium(cl::Session& session, const MediumVolume& medi
        {fingerprint(0, regions), fingerprint(0, tiles), fingerprint(0, bounds), fingerprint(0, block_index),
         fingerprint(0, out.region), fingerprint(0, device.region_params), fingerprint(0, device.tile_map),
         fingerprint(0, device.block_region), fingerprint(0, session.read(session.march_queue(), device.distance_tiles)),
-        fingerprint(0, session.read(session.march_queue(), device.index_tiles))}) {
+        fingerprint(0, session.read(session.march_queue(), device.index_tiles.bytes))}) {
     out.fingerprint = fingerprint(out.fingerprint, &hash, sizeof hash);
   }
   out.regions_buffer = session.upload(regions);

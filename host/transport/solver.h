@@ -84,6 +84,7 @@ struct SolverReport {
   MarchWork march;
   int iterations = 0;            ///< conjugate-gradient steps, or lattice sweeps
   double error_estimate = 0;     ///< relative error of the fluence that the solver's own stopping test gives
+  double storage_error = 0;      ///< more that half-precision storage may leave in it; 0 in single precision
   std::size_t active_blocks = 0, active_voxels = 0;
   std::size_t diffusion_bytes = 0;  ///< device memory of the diffusion's operator and vectors [bytes]
   EnergyBalance energy;

@@ -3,6 +3,8 @@
 #include "host/view/source_tiles.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include "host/base/parallel.h"
@@ -10,14 +12,31 @@
 namespace turbid {
 namespace {
 
-constexpr int kHalo = 3;                             // voxels known around a tile
-constexpr int kPatch = TURBID_TILE_EDGE + 2 * kHalo;  // edge of a patch
+constexpr int kHalo = 3;  // voxels known around a tile
+// Edge of a patch; the outermost voxels are never known, so that looking two voxels on needs no test of bounds.
+constexpr int kRim = kHalo + 1, kPatch = TURBID_TILE_EDGE + 2 * kRim;
 constexpr int kPatchVoxels = kPatch * kPatch * kPatch;
+constexpr float kFaintest = 1e-36f;  // has a finite inverse
+
+struct alignas(16) Colour4 {
+  float c[4] = {0, 0, 0, 0};  // the fourth stays 0: four at once are one instruction
+};
 
 struct Patch {
-  std::vector<glm::vec3> value = std::vector<glm::vec3>(kPatchVoxels);
+  std::vector<Colour4> value = std::vector<Colour4>(kPatchVoxels);
+  std::vector<Colour4> trend = std::vector<Colour4>(kPatchVoxels);  // 1 / value; 0 where there is none
   std::vector<char> known = std::vector<char>(kPatchVoxels);
-  static int index(int x, int y, int z) { return x + kPatch * (y + kPatch * z); }
+  std::array<std::uint32_t, kPatch * kPatch> rows{};  // the same, a bit per voxel of each row along x
+  std::vector<std::pair<int, Colour4>> found;
+  void set(int index, const Colour4& colour) {
+    known[index] = 1;
+    rows[index / kPatch] |= 1u << index % kPatch;
+    value[index] = colour;
+    for (int k = 0; k < 4; ++k) trend[index].c[k] = colour.c[k] > kFaintest ? 1.0f / colour.c[k] : 0.0f;
+  }
+  /// Of node (x, y, z) of the tile, and of its row.
+  static int row(int y, int z) { return y + kRim + kPatch * (z + kRim); }
+  static int index(int x, int y, int z) { return x + kRim + kPatch * row(y, z); }
 };
 
 /// The source of every active voxel, and whose it is: [block][voxel].
@@ -58,68 +77,83 @@ VoxelSources voxel_sources(const FluenceVolume& volume, const MediumVolume& medi
   return sources;
 }
 
-/// Values of a region's own voxels around a tile.
-void load(Patch& patch, const SourceTile& tile, const BlockGrid& grid, const VoxelSources& sources) {
+/// Values of a region's own voxels in a tile and `halo` voxels around it; whether all of them are known.
+bool load(Patch& patch, int halo, const SourceTile& tile, const BlockGrid& grid, const VoxelSources& sources) {
   int blocks[27];
   for (int k = 0; k < 27; ++k) blocks[k] = grid.find(tile.block + glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1);
-  for (int z = 0, i = 0; z < kPatch; ++z) {
-    const int vz = z - kHalo + 8;  // from the first of the 27 blocks
-    for (int y = 0; y < kPatch; ++y) {
-      const int vy = y - kHalo + 8;
-      for (int x = 0; x < kPatch; ++x, ++i) {
-        const int vx = x - kHalo + 8, block = blocks[vx / 8 + 3 * (vy / 8) + 9 * (vz / 8)];
-        const std::size_t at = std::max(block, 0) * std::size_t{512} + vx % 8 + 8 * (vy % 8 + 8 * (vz % 8));
-        patch.known[i] = block >= 0 && sources.region[at] == tile.region;
-        if (patch.known[i]) patch.value[i] = sources.value[at];
+  bool all = true;
+  for (int z = -halo; z < TURBID_TILE_EDGE + halo; ++z) {
+    const int vz = z + 8;  // from the first of the 27 blocks
+    for (int y = -halo; y < TURBID_TILE_EDGE + halo; ++y) {
+      const int vy = y + 8, row = 8 * (vy % 8 + 8 * (vz % 8));
+      patch.rows[Patch::row(y, z)] = 0;
+      for (int x = -halo, i = Patch::index(x, y, z); x < TURBID_TILE_EDGE + halo; ++x, ++i) {
+        const int vx = x + 8, block = blocks[vx / 8 + 3 * (vy / 8) + 9 * (vz / 8)];
+        const std::size_t at = std::max(block, 0) * std::size_t{512} + vx % 8 + row;
+        patch.known[i] = 0;
+        if (block >= 0 && sources.region[at] == tile.region)
+          patch.set(i, {{sources.value[at].x, sources.value[at].y, sources.value[at].z, 0}});
+        else
+          all = false;
       }
     }
   }
+  return all;
+}
+
+/// A voxel's neighbours by bits of a mask, three to a row: how far on each lies in a patch, and its weight.
+struct Neighbour {
+  int step;
+  float weight;
+};
+std::array<Neighbour, 27> neighbours() {
+  std::array<Neighbour, 27> all{};
+  for (int k = 0; k < 27; ++k) {
+    const int dx = k % 3 - 1, dy = k / 3 % 3 - 1, dz = k / 9 - 1, squared = dx * dx + dy * dy + dz * dz;
+    if (squared > 0) all[k] = {dx + kPatch * (dy + kPatch * dz), 1.0f / static_cast<float>(squared)};
+  }
+  return all;
 }
 
 /// One round: every unknown voxel next to known ones continues their trend, a * (a / b) for values b, a on the way to it,
-/// held between a / 2 and 2 a; averaged over the directions that have it, nearer ones heavier. The outermost `margin` voxels
-/// are left out.
-void extrapolate(Patch& patch, int margin) {
-  std::vector<std::pair<int, glm::vec3>> found;
-  for (int z = margin; z < kPatch - margin; ++z) {
-    for (int y = margin; y < kPatch - margin; ++y) {
-      for (int x = margin; x < kPatch - margin; ++x) {
-        const int here = Patch::index(x, y, z);
-        if (patch.known[here]) continue;
-        glm::vec3 sum(0);
+/// held between a / 2 and 2 a; averaged over the directions that have it, nearer ones heavier. The tile and `halo` voxels
+/// around it.
+void extrapolate(Patch& patch, int halo) {
+  static const std::array<Neighbour, 27> all = neighbours();
+  const std::uint32_t inside = ((1u << (TURBID_TILE_EDGE + 2 * halo)) - 1) << (kRim - halo);
+  patch.found.clear();
+  for (int z = -halo; z < TURBID_TILE_EDGE + halo; ++z) {
+    for (int y = -halo; y < TURBID_TILE_EDGE + halo; ++y) {
+      std::uint32_t around[9], near = 0;
+      for (int k = 0; k < 9; ++k) {
+        around[k] = patch.rows[Patch::row(y + k % 3 - 1, z + k / 3 - 1)];
+        near |= around[k] | around[k] << 1 | around[k] >> 1;
+      }
+      std::uint32_t wanted = near & ~around[4] & inside;
+      for (; wanted != 0; wanted &= wanted - 1) {
+        const int bit = std::countr_zero(wanted), here = bit + kPatch * Patch::row(y, z);
+        std::uint32_t known = 0;
+        for (int k = 0; k < 9; ++k) known |= (around[k] >> (bit - 1) & 7u) << 3 * k;
+        Colour4 sum;
         float weights = 0;
-        for (int dz = -1; dz <= 1; ++dz) {
-          for (int dy = -1; dy <= 1; ++dy) {
-            for (int dx = -1; dx <= 1; ++dx) {
-              const int x1 = x + dx, y1 = y + dy, z1 = z + dz;
-              if (std::min({x1, y1, z1}) < 0 || std::max({x1, y1, z1}) >= kPatch) continue;
-              const int first = Patch::index(x1, y1, z1);
-              if (!patch.known[first]) continue;
-              const glm::vec3 a = patch.value[first];
-              const int x2 = x1 + dx, y2 = y1 + dy, z2 = z1 + dz;
-              float weight = 1.0f / static_cast<float>(dx * dx + dy * dy + dz * dz);
-              glm::vec3 guess = a;
-              if (std::min({x2, y2, z2}) >= 0 && std::max({x2, y2, z2}) < kPatch && patch.known[Patch::index(x2, y2, z2)]) {
-                const glm::vec3 b = patch.value[Patch::index(x2, y2, z2)];
-                for (int c = 0; c < 3; ++c) {
-                  if (b[c] > 0) guess[c] = std::clamp(a[c] * (a[c] / b[c]), 0.5f * a[c], 2.0f * a[c]);
-                }
-              } else {
-                weight *= 0.1f;  // no trend known along this direction
-              }
-              sum += weight * guess;
-              weights += weight;
-            }
+        for (; known != 0; known &= known - 1) {
+          const Neighbour& n = all[std::countr_zero(known)];
+          const int first = here + n.step, second = first + n.step;
+          const Colour4 a = patch.value[first], b = patch.trend[second];
+          const bool trend = patch.known[second];
+          const float weight = trend ? n.weight : 0.1f * n.weight;  // where no trend is known along this direction
+          for (int k = 0; k < 4; ++k) {
+            const float on = std::min(std::max(a.c[k] * (a.c[k] * b.c[k]), 0.5f * a.c[k]), 2.0f * a.c[k]);
+            sum.c[k] += weight * (trend && b.c[k] > 0 ? on : a.c[k]);
           }
+          weights += weight;
         }
-        if (weights > 0) found.emplace_back(here, sum / weights);
+        for (float& k : sum.c) k /= weights;
+        patch.found.emplace_back(here, sum);
       }
     }
   }
-  for (const auto& [index, value] : found) {
-    patch.value[index] = value;
-    patch.known[index] = 1;
-  }
+  for (const auto& [index, value] : patch.found) patch.set(index, value);
 }
 
 }  // namespace
@@ -132,21 +166,22 @@ std::vector<float> make_source_tiles(const FluenceVolume& volume, const MediumVo
   parallel_ranges(static_cast<int>(device.source_tiles.size()), [&](int begin, int end) {
     Patch patch;
     for (int tile = begin; tile < end; ++tile) {
-      load(patch, device.source_tiles[tile], volume.blocks, sources);
-      if (std::find(patch.known.begin(), patch.known.end(), 0) != patch.known.end()) {
-        extrapolate(patch, kHalo - 2);  // as far as the second round looks
-        extrapolate(patch, kHalo);
+      if (!load(patch, 0, device.source_tiles[tile], volume.blocks, sources)) {
+        load(patch, kHalo, device.source_tiles[tile], volume.blocks, sources);
+        extrapolate(patch, 2);  // as far as the second round looks
+        extrapolate(patch, 0);
       }
       float* out = tiles.data() + static_cast<std::size_t>(tile) * TURBID_TILE_NODES * width;
       for (int z = 0; z < TURBID_TILE_EDGE; ++z) {
         for (int y = 0; y < TURBID_TILE_EDGE; ++y) {
           for (int x = 0; x < TURBID_TILE_EDGE; ++x, out += width) {
-            const int at = Patch::index(x + kHalo, y + kHalo, z + kHalo);
-            const glm::vec3 value = patch.known[at] ? patch.value[at] : glm::vec3(0);
+            const int at = Patch::index(x, y, z);
+            if (!patch.known[at]) continue;
+            const Colour4& value = patch.value[at];
             if (channels == 3) {
-              for (int c = 0; c < 3; ++c) out[c] = value[c];
+              for (int c = 0; c < 3; ++c) out[c] = value.c[c];
             } else {
-              out[0] = device.features.to_channels(value).x;
+              out[0] = device.features.to_channels({value.c[0], value.c[1], value.c[2]}).x;
             }
           }
         }

@@ -155,8 +155,8 @@ struct ViewPass::Prepared {
   VoxelSpace space;
   EntrySurfaces surfaces;
   cl::Program program;
-  cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<float>,
-             cl::Buffer<float>, cl::Buffer<int>, ViewParams, cl::Buffer<ViewSample>, cl::Buffer<int>, cl::Buffer<float>,
+  cl::Kernel<cl::Buffer<RegionParams>, cl::Buffer<int>, cl::Buffer<int>, cl::Buffer<float>, cl::Buffer<std::byte>,
+             cl::Buffer<std::byte>, cl::Buffer<int>, ViewParams, cl::Buffer<ViewSample>, cl::Buffer<int>, cl::Buffer<float>,
              cl::Buffer<LightParams>, cl::Buffer<float>, cl::Buffer<float>, cl::Buffer<float>, cl::Buffer<float>>
       kernel;
   ViewParams params;
@@ -227,7 +227,8 @@ ViewImage ViewPass::look(const Camera& camera, const std::function<void(double)>
     // A CPU's work-items take samples until none is left, one work-item per core; a GPU's take one each.
     const std::size_t items = cpu ? p.session.device().compute_units : strip.samples.size();
     p.kernel.enqueue(queue, {items}, {cpu ? std::size_t{1} : std::size_t{64}}, medium.regions_buffer, medium.tile_map_buffer,
-                     medium.block_region_buffer, medium.distance_tiles, medium.index_tiles, medium.coefficient_tiles,
+                     medium.block_region_buffer, medium.distance_tiles, medium.index_tiles.bytes,
+                     medium.coefficient_tiles.bytes,
                      medium.region_tiles, params, samples, claims, p.tiles, p.lights, p.depths, p.transmittance, p.ground, radiance);
     std::vector<float> values(8 * strip.samples.size());
     p.session.read(queue, radiance, std::span<float>(values));

@@ -14,7 +14,7 @@ SampleMaker::SampleMaker(const ViewInput& in, const Camera& camera, const EntryS
   view_ = camera_view(camera.position, camera.target, camera.up, camera.fov, camera.width * grid_,
                       camera.height * grid_, surfaces.bounds);
   if (!surfaces.meshes.empty()) image_ = rasterise(surfaces.meshes, view_);
-  clip_to_world_ = glm::inverse(glm::dmat4(view_.projection) * glm::dmat4(view_.view));
+  rays_.emplace(view_);
   ambient_ = surfaces.ambient;
   const glm::vec3 x = space.point(camera.position);
   std::vector<int> owner(1);
@@ -45,15 +45,9 @@ Strip SampleMaker::strip(int first, int last) const {
   return result;
 }
 
-glm::vec3 SampleMaker::direction_of(int x, int y) const {
-  const glm::dvec4 ndc(2.0 * (x + 0.5) / view_.width - 1.0, 1.0 - 2.0 * (y + 0.5) / view_.height, 0.5, 1.0);
-  const glm::dvec4 far_point = clip_to_world_ * ndc;
-  return glm::normalize(glm::dvec3(far_point) / far_point.w - glm::dvec3(camera_.position));
-}
-
 void SampleMaker::add(int x, int y, std::size_t to, Strip* out) const {
   const std::size_t i = static_cast<std::size_t>(y) * view_.width + x;
-  const glm::vec3 direction = direction_of(x, y), eye = camera_.position;
+  const glm::vec3 eye = camera_.position, direction = glm::normalize(rays_->far_point(x, y) - glm::dvec3(eye));
   ViewSample sample{};
   sample.region = -1;
   copy(direction, sample.direction);

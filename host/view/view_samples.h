@@ -2,9 +2,10 @@
 // A camera's samples: what each pixel sees first, from a rasterised picture of the bodies' surfaces.
 #pragma once
 #include <algorithm>
+#include <optional>
 #include <vector>
 
-#include "host/raster/raster.h"
+#include "host/raster/pixel_hit.h"
 #include "host/transport/light_rays.h"
 #include "host/view/view_pass.h"
 #include "kernels/shared/view_params.h"
@@ -50,7 +51,6 @@ class SampleMaker {
   Strip strip(int first, int last) const;
 
  private:
-  glm::vec3 direction_of(int x, int y) const;
   void add(int x, int y, std::size_t to, Strip* out) const;
   void start_at(glm::vec3 hit, glm::vec3 direction, int region, glm::vec3 normal, ViewSample* sample) const;
   float ground_distance(glm::vec3 eye, glm::vec3 direction) const;
@@ -61,7 +61,7 @@ class SampleMaker {
   int grid_;
   RasterView view_;
   RasterImage image_;
-  glm::dmat4 clip_to_world_{1};
+  std::optional<PixelRays> rays_;
   bool ambient_ = false;
   int camera_region_ = -1;
 };

@@ -13,9 +13,9 @@ static ALWAYS_INLINE Colour source_in(const global float* source_tiles, int tile
     return interpolate4(source_tiles, tile, cell);
 #else
     const global float* at = source_tiles + (size_t)tile * TURBID_TILE_NODES + cell.node;
-    const float2 a = vload2(0, at), b = vload2(0, at + TURBID_TILE_EDGE);
-    const float2 c = vload2(0, at + TURBID_TILE_EDGE * TURBID_TILE_EDGE);
-    const float2 d = vload2(0, at + TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1));
+    const float2 a = load2(at), b = load2(at + TURBID_TILE_EDGE);
+    const float2 c = load2(at + TURBID_TILE_EDGE * TURBID_TILE_EDGE);
+    const float2 d = load2(at + TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1));
     const float2 row = mix(mix(a, b, cell.fraction.y), mix(c, d, cell.fraction.y), cell.fraction.z);
     return mix(row.x, row.y, cell.fraction.x);
 #endif

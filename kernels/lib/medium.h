@@ -14,6 +14,32 @@
 #if !defined(TURBID_BODIES) || !defined(TURBID_GRADED) || !defined(TURBID_HETEROGENEOUS) || !defined(TURBID_SCATTERING)
 #error "TURBID_BODIES, TURBID_GRADED, TURBID_HETEROGENEOUS and TURBID_SCATTERING must be defined"
 #endif
+#if !defined(TURBID_HALF_TILES)
+#error "TURBID_HALF_TILES (1: tiles of index and coefficients are stored in half precision) must be defined"
+#endif
+
+// Numbers of index and coefficients are stored 2^exponent times as large, so that half precision resolves small ones too.
+#if TURBID_HALF_TILES
+typedef half TileNumber;
+#define UNIT_OF(exponent) as_float((127 - (exponent)) << 23)
+#define INDEX_UNIT UNIT_OF(TURBID_INDEX_EXPONENT)
+#define COEFFICIENT_UNIT UNIT_OF(TURBID_COEFFICIENT_EXPONENT)
+#else
+typedef float TileNumber;
+#define INDEX_UNIT 1.0f
+#define COEFFICIENT_UNIT 1.0f
+#endif
+
+// The two x-neighbours of a row of corners come in one load.
+static ALWAYS_INLINE float2 load2(const global float* at) { return vload2(0, at); }
+static ALWAYS_INLINE float4 __attribute__((overloadable)) load4(const global float* at) { return vload4(0, at); }
+static ALWAYS_INLINE float8 __attribute__((overloadable)) load8(const global float* at) { return vload8(0, at); }
+static ALWAYS_INLINE float16 __attribute__((overloadable)) load16(const global float* at) { return vload16(0, at); }
+static ALWAYS_INLINE float4 __attribute__((overloadable)) load4(const global half* at) { return vload_half4(0, at); }
+static ALWAYS_INLINE float8 __attribute__((overloadable)) load8(const global half* at) { return vload_half8(0, at); }
+static ALWAYS_INLINE float16 __attribute__((overloadable)) load16(const global half* at) {
+  return (float16)(vload_half8(0, at), vload_half8(1, at));
+}
 
 #define BLOCKS_X (TURBID_VOXELS_X / 8)
 #define BLOCKS_Y (TURBID_VOXELS_Y / 8)
@@ -25,14 +51,14 @@ typedef struct {
   const global int* tile_map;          // [set][block]
   const global int* block_region;      // [block]: the one region of the block; < 0: see TURBID_SLOPE_UNIT
   const global float* distance_tiles;  // [tile][node][4]
-  const global float* index_tiles;     // [tile][node][4]
-  const global float* coefficient_tiles;  // [tile][node][COEFFICIENT_WIDTH]
+  const global TileNumber* index_tiles;  // [tile][node][4]
+  const global TileNumber* coefficient_tiles;  // [tile][node][COEFFICIENT_WIDTH]
 } Medium;
 
 // The kernels that trace rays take the medium by these arguments.
 #define MEDIUM_ARGUMENTS                                                                                     \
   const global RegionParams *regions, const global int *tile_map, const global int *block_region,           \
-      const global float *distance_tiles, const global float *index_tiles, const global float *coefficient_tiles
+      const global float *distance_tiles, const global TileNumber *index_tiles, const global TileNumber *coefficient_tiles
 #define MEDIUM_FROM_ARGUMENTS {regions, tile_map, block_region, distance_tiles, index_tiles, coefficient_tiles}
 
 // The cell between eight nodes that holds a point. Within half a voxel of the domain's faces the outermost node's value holds.
@@ -55,18 +81,21 @@ static Cell locate(float3 x) {
   return cell;
 }
 
-// Trilinear value of four-wide nodes; the two x-neighbours of a corner come in one load.
-static float4 interpolate4(const global float* tiles, int tile, Cell cell) {
-  const global float* at = tiles + 4 * ((size_t)tile * TURBID_TILE_NODES + cell.node);
-  const float8 a = vload8(0, at);
-  const float8 b = vload8(0, at + 4 * TURBID_TILE_EDGE);
-  const float8 c = vload8(0, at + 4 * TURBID_TILE_EDGE * TURBID_TILE_EDGE);
-  const float8 d = vload8(0, at + 4 * TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1));
-  const float8 low = a + cell.fraction.z * (c - a);
-  const float8 high = b + cell.fraction.z * (d - b);
-  const float8 row = low + cell.fraction.y * (high - low);
-  return row.lo + cell.fraction.x * (row.hi - row.lo);
-}
+// Trilinear value of four-wide nodes.
+#define INTERPOLATE4(Number)                                                                                          \
+  static float4 __attribute__((overloadable)) interpolate4(const global Number* tiles, int tile, Cell cell) {         \
+    const global Number* at = tiles + 4 * ((size_t)tile * TURBID_TILE_NODES + cell.node);                             \
+    const float8 a = load8(at), b = load8(at + 4 * TURBID_TILE_EDGE);                                                 \
+    const float8 c = load8(at + 4 * TURBID_TILE_EDGE * TURBID_TILE_EDGE);                                             \
+    const float8 d = load8(at + 4 * TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1));                                       \
+    const float8 low = a + cell.fraction.z * (c - a), high = b + cell.fraction.z * (d - b);                           \
+    const float8 row = low + cell.fraction.y * (high - low);                                                          \
+    return row.lo + cell.fraction.x * (row.hi - row.lo);                                                              \
+  }
+INTERPOLATE4(float)
+#if TURBID_HALF_TILES
+INTERPOLATE4(half)
+#endif
 
 // Gradient of the last component's trilinear interpolant [per voxel].
 static float3 slope4(const global float* tiles, int tile, Cell cell) {
@@ -82,16 +111,22 @@ static float3 slope4(const global float* tiles, int tile, Cell cell) {
 }
 
 // Pairs of nodes of `width` values at a cell's four rows along x, which LOAD reads, by the rows' weights.
-#define WEIGH_ROWS(LOAD, width, at, rows, stride)                                                       \
-  ((rows)[0] * LOAD(0, at) + (rows)[stride] * LOAD(0, (at) + (width) * TURBID_TILE_EDGE) +              \
-   (rows)[2 * (stride)] * LOAD(0, (at) + (width) * TURBID_TILE_EDGE * TURBID_TILE_EDGE) +               \
-   (rows)[3 * (stride)] * LOAD(0, (at) + (width) * TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1)))
+#define WEIGH_ROWS(LOAD, width, at, rows, stride)                                                    \
+  ((rows)[0] * LOAD(at) + (rows)[stride] * LOAD((at) + (width) * TURBID_TILE_EDGE) +                 \
+   (rows)[2 * (stride)] * LOAD((at) + (width) * TURBID_TILE_EDGE * TURBID_TILE_EDGE) +               \
+   (rows)[3 * (stride)] * LOAD((at) + (width) * TURBID_TILE_EDGE * (TURBID_TILE_EDGE + 1)))
 
 // interpolate4 by the weights of the four rows of corners and of the corners farther along x.
-static ALWAYS_INLINE float4 weigh4(const global float* at, const float* rows, int stride, float x) {
-  const float8 row = WEIGH_ROWS(vload8, 4, at, rows, stride);
-  return row.lo + x * (row.hi - row.lo);
-}
+#define WEIGH4(Number)                                                                                                      \
+  static ALWAYS_INLINE float4 __attribute__((overloadable)) weigh4(const global Number* at, const float* rows, int stride,  \
+                                                                   float x) {                                               \
+    const float8 row = WEIGH_ROWS(load8, 4, at, rows, stride);                                                              \
+    return row.lo + x * (row.hi - row.lo);                                                                                  \
+  }
+WEIGH4(float)
+#if TURBID_HALF_TILES
+WEIGH4(half)
+#endif
 
 // A colour at a node of a source tile.
 #if TURBID_CHANNELS == 3
@@ -102,7 +137,7 @@ static ALWAYS_INLINE float4 weigh_colour(const global float* at, const float* ro
 #else
 #define SOURCE_WIDTH 1
 static ALWAYS_INLINE float weigh_colour(const global float* at, const float* rows, int stride, float x) {
-  const float2 row = WEIGH_ROWS(vload2, 1, at, rows, stride);
+  const float2 row = WEIGH_ROWS(load2, 1, at, rows, stride);
   return row.x + x * (row.y - row.x);
 }
 #endif
@@ -157,7 +192,7 @@ static float4 index_at(const Medium* medium, int region, Cell cell) {
   const int set = medium->regions[region].index_set;
   if (set >= 0) {
     const int tile = tile_of(medium, set, cell.block);
-    if (tile >= 0) return interpolate4(medium->index_tiles, tile, cell);
+    if (tile >= 0) return INDEX_UNIT * interpolate4(medium->index_tiles, tile, cell);
   }
 #endif
   return (float4)(0.0f, 0.0f, 0.0f, 0.5f * eta * eta);
@@ -183,13 +218,12 @@ static Extinction extinction_in(const Medium* medium, int region, int tile, Cell
   Extinction result;
 #if TURBID_HETEROGENEOUS
   if (tile >= 0) {
-    const global float* at = medium->coefficient_tiles + COEFFICIENT_WIDTH * ((size_t)tile * TURBID_TILE_NODES + cell.node);
-    // The two x-neighbours of a row of corners come in one load.
+    const global TileNumber* at = medium->coefficient_tiles + COEFFICIENT_WIDTH * ((size_t)tile * TURBID_TILE_NODES + cell.node);
 #if TURBID_CHANNELS == 3
-#define ROW(offset) vload16(0, at + COEFFICIENT_WIDTH * (offset))
+#define ROW(offset) load16(at + COEFFICIENT_WIDTH * (offset))
     typedef float16 Row;
 #else
-#define ROW(offset) vload4(0, at + COEFFICIENT_WIDTH * (offset))
+#define ROW(offset) load4(at + COEFFICIENT_WIDTH * (offset))
     typedef float4 Row;
 #endif
     const Row a = ROW(0), b = ROW(TURBID_TILE_EDGE);
@@ -197,8 +231,8 @@ static Extinction extinction_in(const Medium* medium, int region, int tile, Cell
 #undef ROW
     const Row low = a + cell.fraction.z * (c - a), high = b + cell.fraction.z * (d - b);
     const Row row = low + cell.fraction.y * (high - low);
-    result.sigma_s = row.lo.lo + cell.fraction.x * (row.hi.lo - row.lo.lo);
-    result.sigma_a = row.lo.hi + cell.fraction.x * (row.hi.hi - row.lo.hi);
+    result.sigma_s = COEFFICIENT_UNIT * (row.lo.lo + cell.fraction.x * (row.hi.lo - row.lo.lo));
+    result.sigma_a = COEFFICIENT_UNIT * (row.lo.hi + cell.fraction.x * (row.hi.hi - row.lo.hi));
     return result;
   }
 #endif
@@ -209,14 +243,14 @@ static Extinction extinction_in(const Medium* medium, int region, int tile, Cell
 
 // (sigma_s, sigma_a) of nodes by weights, see weigh4.
 #if TURBID_CHANNELS == 3
-static ALWAYS_INLINE float8 coefficients_of(const global float* at, const float* rows, int stride, float x) {
-  const float16 row = WEIGH_ROWS(vload16, 8, at, rows, stride);
-  return row.lo + x * (row.hi - row.lo);
+static ALWAYS_INLINE float8 coefficients_of(const global TileNumber* at, const float* rows, int stride, float x) {
+  const float16 row = WEIGH_ROWS(load16, 8, at, rows, stride);
+  return COEFFICIENT_UNIT * (row.lo + x * (row.hi - row.lo));
 }
 #else
-static ALWAYS_INLINE float2 coefficients_of(const global float* at, const float* rows, int stride, float x) {
-  const float4 row = WEIGH_ROWS(vload4, 2, at, rows, stride);
-  return row.lo + x * (row.hi - row.lo);
+static ALWAYS_INLINE float2 coefficients_of(const global TileNumber* at, const float* rows, int stride, float x) {
+  const float4 row = WEIGH_ROWS(load4, 2, at, rows, stride);
+  return COEFFICIENT_UNIT * (row.lo + x * (row.hi - row.lo));
 }
 #endif
 

@@ -115,7 +115,7 @@ static ALWAYS_INLINE Ints glide(const Medium* medium, const global int4* region_
   Points v = v_before;
 #if TURBID_GRADED
   const Ints no_index = LOAD(p->no_index);
-  v = along(v, no_index ? (Floats)(0.0f) : dtau, forces_of(strides));
+  v = along(v, no_index ? (Floats)(0.0f) : dtau * INDEX_UNIT, forces_of(strides));
   const Points mean = {0.5f * (v_before.x + v.x), 0.5f * (v_before.y + v.y), 0.5f * (v_before.z + v.z)};
   strides->eta_squared = squared_length(mean);
   strides->length = dtau * square_root(strides->eta_squared);

@@ -258,7 +258,7 @@ static Step advance(const Medium* medium, Ray* ray, float step_size, float room)
     const int tile = tile_of(medium, region->index_set, cell.block);
     if (tile >= 0) {
       graded = true;
-      v += dtau * interpolate4(medium->index_tiles, tile, cell).xyz;
+      v += dtau * INDEX_UNIT * interpolate4(medium->index_tiles, tile, cell).xyz;
       to = from + 0.5f * dtau * (ray->v + v);
       const float3 target = to;
       meet(medium, &step, ray->region, ray->grace, from, &to);

@@ -14,6 +14,7 @@ namespace turbid {
 namespace {
 
 using F = cl::Buffer<float>;
+using Bytes = cl::Buffer<std::byte>;
 using I = cl::Buffer<int>;
 
 struct Sample {
@@ -27,13 +28,13 @@ struct Sample {
 std::vector<Sample> sample(const DeviceMedium& medium, const std::vector<glm::vec3>& points, int body = 0) {
   cl::Session& session = test::session();
   const cl::Program program = session.build(test::test_kernel("probe_medium.cl"), medium.defines());
-  cl::Kernel<cl::Buffer<RegionParams>, I, I, F, F, F, F, F, int, int> kernel(program, "probe_point");
+  cl::Kernel<cl::Buffer<RegionParams>, I, I, F, Bytes, Bytes, F, F, int, int> kernel(program, "probe_point");
   std::vector<float> in;
   for (const glm::vec3& p : points) in.insert(in.end(), {p.x, p.y, p.z});
   const F input = session.upload(in);
   const F output = session.zeros<float>(17 * points.size());
   kernel.enqueue(session.march_queue(), {points.size()}, {1}, medium.regions_buffer, medium.tile_map_buffer,
-                 medium.block_region_buffer, medium.distance_tiles, medium.index_tiles, medium.coefficient_tiles, input,
+                 medium.block_region_buffer, medium.distance_tiles, medium.index_tiles.bytes, medium.coefficient_tiles.bytes, input,
                  output, body, static_cast<int>(points.size()));
   const std::vector<float> out = session.read(session.march_queue(), output);
   std::vector<Sample> result;
@@ -232,6 +233,37 @@ TEST(MediumSampling, VaryingCoefficientsAreInterpolatedPerVoxelEdge) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     ASSERT_NEAR(samples[i].sigma_s, 0.5f * (1 + 0.5f * points[i].x), 2e-6);  // rounding of values up to 5
     ASSERT_NEAR(samples[i].sigma_a, 0.5f * (2 + 0.5f * points[i].y), 2e-6);
+  }
+}
+
+TEST(MediumSampling, HalfPrecisionKeepsElevenBitsOfIndexAndCoefficientsHoweverSmall) {
+  // Rounding to nearest errs by at most 2^-11 of a node's value; weights are positive. Grey, and three colours.
+  for (const int channels : {1, 3}) {
+    MediumDescription scene = test::empty_domain(glm::ivec3(16), 0.5f);
+    Material material = test::make_material({});
+    material.sigma_s = expression_field("3e-4 * exp(x)");
+    material.sigma_a = expression_field("1e-7 * (2 + y)");
+    material.eta = expression_field("1.3 + 0.01*x*x + 0.02*y");
+    test::set_ambient(scene, material);
+    const MediumVolume volume = voxelise(scene);
+    SceneFeatures features = scene_features(volume, {});
+    features.channels = channels;
+    const DeviceMedium full = upload_medium(test::session(), volume, features);
+    const DeviceMedium half = upload_medium(test::session(), volume, features, Storage::half_precision);
+    EXPECT_EQ(2 * half.coefficient_tiles.bytes.bytes(), full.coefficient_tiles.bytes.bytes());
+    EXPECT_EQ(2 * half.index_tiles.bytes.bytes(), full.index_tiles.bytes.bytes());
+    EXPECT_EQ(full.storage_error(), 0);
+    EXPECT_GT(half.coefficient_tiles.rounding, 5e-5) << "a quarter of 2^-11 is the root mean square of rounding errors, about";
+    EXPECT_LT(half.coefficient_tiles.rounding, 4.9e-4);
+    const auto points = random_points(glm::vec3(0), glm::vec3(16), 200, 8);
+    const auto exact = sample(full, points), rounded = sample(half, points);
+    constexpr float kRound = 1.001f / 2048;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      ASSERT_NEAR(rounded[i].sigma_s, exact[i].sigma_s, kRound * exact[i].sigma_s);
+      ASSERT_NEAR(rounded[i].sigma_a, exact[i].sigma_a, kRound * exact[i].sigma_a);
+      for (int k = 0; k < 4; ++k) ASSERT_NEAR(rounded[i].index[k], exact[i].index[k], kRound * std::abs(exact[i].index[k]) + 1e-8f);
+    }
+    EXPECT_NE(rounded[0].sigma_s, exact[0].sigma_s);
   }
 }
 

@@ -14,6 +14,7 @@ namespace turbid {
 namespace {
 
 using F = cl::Buffer<float>;
+using Bytes = cl::Buffer<std::byte>;
 using I = cl::Buffer<int>;
 
 struct StepResult {
@@ -31,13 +32,13 @@ std::vector<StepResult> step_once(const DeviceMedium& medium, const std::vector<
                                   float grace = 0) {
   cl::Session& session = test::session();
   const cl::Program program = session.build(test::test_kernel("probe_medium.cl"), medium.defines());
-  cl::Kernel<cl::Buffer<RegionParams>, I, I, F, F, F, F, float, F, int> kernel(program, "probe_step");
+  cl::Kernel<cl::Buffer<RegionParams>, I, I, F, Bytes, Bytes, F, float, F, int> kernel(program, "probe_step");
   std::vector<float> in;
   for (const auto& r : rays)
     in.insert(in.end(), {r.x.x, r.x.y, r.x.z, r.v.x, r.v.y, r.v.z, static_cast<float>(r.region), grace});
   const F input = session.upload(in), output = session.zeros<float>(16 * rays.size());
   kernel.enqueue(session.march_queue(), {rays.size()}, {1}, medium.regions_buffer, medium.tile_map_buffer,
-                 medium.block_region_buffer, medium.distance_tiles, medium.index_tiles, medium.coefficient_tiles, input,
+                 medium.block_region_buffer, medium.distance_tiles, medium.index_tiles.bytes, medium.coefficient_tiles.bytes, input,
                  step, output, static_cast<int>(rays.size()));
   const std::vector<float> out = session.read(session.march_queue(), output);
   std::vector<StepResult> result;

@@ -103,97 +103,42 @@ static float3 surface_normal(const Medium* medium, int body, float3 x) {
   return gradient * rsqrt(fmax(dot(gradient, gradient), 1e-12f));
 }
 
-// How close the points just before and just beyond a surface stand to it, along the ray [voxels].
-#define CROSSING_GUARD 1e-3f
-
-// A stretch of the segment a-b, as shares of it, and the signed distances of a body at its two ends.
-typedef struct {
-  float low, high;
-  float d_low, d_high;
-} Bracket;
-
-static float distance_at(const Medium* medium, int body, float3 x) { return surface_at(medium, body, locate(x)).w; }
-
-// Where the distance is zero, as if it were linear in the bracket.
-static float zero_of(const Bracket* k) { return k->low + (k->high - k->low) * k->d_low / (k->d_low - k->d_high); }
-
-// Where the surface of `step->surface` crosses the segment: regula falsi (the Illinois variant: an end that stays counts half).
-// False unless that surface alone divides the segment's ends.
-static bool follow_distance(const Medium* medium, const Step* step, int region, float3 a, float3 b, float guard, Bracket* k) {
-  k->low = 0.0f, k->high = 1.0f;
-  k->d_low = distance_at(medium, step->surface, a);
-  k->d_high = distance_at(medium, step->surface, b);
-  if ((k->d_low < 0.0f) != (step->surface == region) || (k->d_high < 0.0f) == (step->surface == region)) return false;
-  Bracket weighed = *k;
-  float t = zero_of(k), before = -1.0f;
-  int side = 0;
-  for (int i = 0; i < 8 && fabs(t - before) > 0.25f * guard; ++i) {
-    const float d = distance_at(medium, step->surface, a + t * (b - a));
-    if ((d < 0.0f) == (k->d_low < 0.0f)) {
-      k->low = weighed.low = t, k->d_low = weighed.d_low = d;
-      if (side < 0) weighed.d_high *= 0.5f;
-      side = -1;
-    } else {
-      k->high = weighed.high = t, k->d_high = weighed.d_high = d;
-      if (side > 0) weighed.d_low *= 0.5f;
-      side = 1;
-    }
-    before = t;
-    t = zero_of(&weighed);
-  }
-  if (fabs(t - before) > 0.25f * guard) return false;
-  k->low = fmax(k->low, t - guard);
-  k->high = fmin(k->high, t + guard);
-#if TURBID_BODIES > 1
-  // Another body may stand in the way.
-  return region_at(medium, locate(a + k->low * (b - a))) == region &&
-         region_at(medium, locate(a + k->high * (b - a))) == step->next_region;
-#else
-  return true;
-#endif
-}
-
-// Narrows the first change of region on the segment down to 2^-6 of it, then takes the zero of the signed distance by the secant.
-static void follow_regions(const Medium* medium, Step* step, int region, float3 a, float3 b, float guard, Bracket* k) {
-  k->low = 0.0f, k->high = 1.0f;
+// Narrows the first change of region on the segment a-b down to 2^-6 of it, then takes the zero of the signed distance by
+// the secant: `before` stays in `region`, `beyond` is in the next one.
+static void find_crossing(const Medium* medium, Step* step, int region, float3 a, float3 b, float3* before) {
+  float low = 0.0f, high = 1.0f;
   int next = step->next_region;
   for (int i = 0; i < 6; ++i) {
-    const float middle = 0.5f * (k->low + k->high);
+    const float middle = 0.5f * (low + high);
     const int there = region_at(medium, locate(a + middle * (b - a)));
     if (there == region) {
-      k->low = middle;
+      low = middle;
     } else {
-      k->high = middle;
+      high = middle;
       next = there;
     }
   }
   step->next_region = next;
   step->surface = max(region, next);
-  const float3 before = a + k->low * (b - a), beyond = a + k->high * (b - a);
-  k->d_low = distance_at(medium, step->surface, before);
-  k->d_high = distance_at(medium, step->surface, beyond);
+  const Cell cell_low = locate(a + low * (b - a)), cell_high = locate(a + high * (b - a));
+  float d_low = surface_at(medium, step->surface, cell_low).w;
+  float d_high = surface_at(medium, step->surface, cell_high).w;
   const int other = min(region, next);
-  if ((k->d_low < 0.0f) == (k->d_high < 0.0f) && other > 0) {
+  if ((d_low < 0.0f) == (d_high < 0.0f) && other > 0) {
     // The gap between bodies that touch: it ends at the earlier one's surface.
     step->surface = other;
-    k->d_low = distance_at(medium, other, before);
-    k->d_high = distance_at(medium, other, beyond);
+    d_low = surface_at(medium, other, cell_low).w;
+    d_high = surface_at(medium, other, cell_high).w;
   }
-  if ((k->d_low < 0.0f) != (k->d_high < 0.0f)) {
-    const float zero = zero_of(k);
-    k->low = fmax(k->low, zero - guard);
-    k->high = fmin(k->high, zero + guard);
+  const float length = fmax(distance(a, b), 1e-6f);
+  if ((d_low < 0.0f) != (d_high < 0.0f)) {
+    const float zero = low + (high - low) * d_low / (d_low - d_high);
+    const float guard = 1e-3f / length;  // a thousandth of a voxel on either side
+    low = fmax(low, zero - guard);
+    high = fmin(high, zero + guard);
   }
-}
-
-// The first change of region on the segment a-b: `before` stays in `region`, `beyond` is in the next one.
-static void find_crossing(const Medium* medium, Step* step, int region, float3 a, float3 b, float3* before) {
-  const float guard = CROSSING_GUARD / fmax(distance(a, b), 1e-6f);
-  Bracket k;
-  step->surface = max(region, step->next_region);
-  if (!follow_distance(medium, step, region, a, b, guard, &k)) follow_regions(medium, step, region, a, b, guard, &k);
-  *before = a + k.low * (b - a);
-  step->beyond = a + k.high * (b - a);
+  *before = a + low * (b - a);
+  step->beyond = a + high * (b - a);
 }
 
 // How far a point lies on the other side of the surface between two regions [voxels].

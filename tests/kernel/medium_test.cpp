@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
 #include "tests/support/paths.h"
@@ -21,7 +22,7 @@ struct Sample {
   glm::vec3 fraction;
   int region;
   glm::vec4 index, surface;
-  float sigma_s, sigma_a;
+  float sigma_s, sigma_a, room;
 };
 
 std::vector<Sample> sample(const DeviceMedium& medium, const std::vector<glm::vec3>& points, int body = 0) {
@@ -31,14 +32,14 @@ std::vector<Sample> sample(const DeviceMedium& medium, const std::vector<glm::ve
   std::vector<float> in;
   for (const glm::vec3& p : points) in.insert(in.end(), {p.x, p.y, p.z});
   const F input = session.upload(in);
-  const F output = session.zeros<float>(16 * points.size());
+  const F output = session.zeros<float>(17 * points.size());
   kernel.enqueue(session.march_queue(), {points.size()}, {1}, medium.regions_buffer, medium.tile_map_buffer,
                  medium.block_region_buffer, medium.distance_tiles, medium.index_tiles.bytes, medium.coefficient_tiles.bytes, input,
                  output, body, static_cast<int>(points.size()));
   const std::vector<float> out = session.read(session.march_queue(), output);
   std::vector<Sample> result;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const float* a = out.data() + 16 * i;
+    const float* a = out.data() + 17 * i;
     result.push_back({static_cast<int>(a[0]),
                       static_cast<int>(a[1]),
                       {a[2], a[3], a[4]},
@@ -46,7 +47,8 @@ std::vector<Sample> sample(const DeviceMedium& medium, const std::vector<glm::ve
                       {a[6], a[7], a[8], a[9]},
                       {a[10], a[11], a[12], a[13]},
                       a[14],
-                      a[15]});
+                      a[15],
+                      a[16]});
   }
   return result;
 }
@@ -117,6 +119,34 @@ TEST(MediumSampling, LinearFieldsAreReproduced) {
   }
 }
 
+TEST(MediumSampling, WithinTheRoomOfAPointTheRegionIsTheSame) {
+  // Edges and a round surface, neither along the grid's axes.
+  MediumDescription scene = test::empty_domain(glm::ivec3(32), 1.0f);
+  Placement turned = test::at(glm::vec3(16, 15, 16));
+  turned.rotation = glm::mat3(glm::rotate(glm::mat4(1), 0.7f, glm::normalize(glm::vec3(1, 2, 3))));
+  test::add_body(scene, make_box(glm::vec3(12), turned), test::make_material({.eta = 1.3f}));
+  test::add_body(scene, make_sphere(5, test::at(glm::vec3(22, 18, 17))), test::make_material({.eta = 1.5f}));
+  const MediumVolume volume = voxelise(scene);
+  const DeviceMedium medium = upload_medium(test::session(), volume, scene_features(volume, {}));
+  const auto points = random_points(glm::vec3(1), glm::vec3(31), 40000, 6);
+  const auto samples = sample(medium, points);
+  const auto offsets = random_points(glm::vec3(-1), glm::vec3(1), 40000, 7);
+  std::vector<glm::vec3> others;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    others.push_back(points[i] + 0.9999f * std::min(samples[i].room, 8.0f) * glm::normalize(offsets[i]));
+  }
+  const auto there = sample(medium, others);
+  int asked = 0, far = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (there[i].block != samples[i].block || samples[i].room > 8.0f) continue;
+    ASSERT_EQ(there[i].region, samples[i].region) << i;
+    ++asked;
+    far += samples[i].room > 3.0f;
+  }
+  EXPECT_GT(asked, 5000);
+  EXPECT_GT(far, 100) << "distances reach four voxels: room should come near that";
+}
+
 TEST(MediumSampling, TheBodyThatStandsLaterInTheSceneOwnsAPoint) {
   MediumDescription scene = test::empty_domain(glm::ivec3(32), 1.0f);
   test::add_body(scene, make_sphere(10, test::at(glm::vec3(16))), test::make_material({.eta = 1.3f}));
@@ -145,7 +175,8 @@ TEST(MediumSampling, TheBodyThatStandsLaterInTheSceneOwnsAPoint) {
 }
 
 TEST(MediumSampling, TouchingBodiesLeaveNoGapBetweenThem) {
-  // Faces that coincide on a voxel's face, on its centre and where blocks of cells end, and that rounding has drawn apart.
+  // Faces that coincide on a voxel's face, on its centre and where blocks of cells end, and that rounding has drawn
+  // apart.
   for (const float face : {12.0f, 12.5f, 16.5f, 14.3f}) {
     for (const float gap : {0.0f, 1e-5f, 4e-3f}) {
       for (const bool reversed : {false, true}) {

@@ -14,14 +14,16 @@ kernel void probe_interface(const global float* in, global float* out, int count
   vstore3(surface.refracted, 0, out + 7 * i + 4);
 }
 
-// out[16 i]: block, node, fraction, region, (grad u, u), (grad d, d) of `body`, sigma_s and sigma_a of the first channel.
+// out[17 i]: block, node, fraction, region, (grad u, u), (grad d, d) of `body`, sigma_s and sigma_a of the first channel, room.
 kernel void probe_point(MEDIUM_ARGUMENTS, const global float* points, global float* out, int body, int count) {
   const int i = get_global_id(0);
   if (i >= count) return;
   const Medium medium = MEDIUM_FROM_ARGUMENTS;
   const Cell cell = locate(vload3(i, points));
-  global float* at = out + 16 * i;
-  const int region = region_at(&medium, cell);
+  global float* at = out + 17 * i;
+  float room;
+  const int region = region_with_room(&medium, cell, &room);
+  at[16] = room;
   at[0] = cell.block;
   at[1] = cell.node;
   vstore3(cell.fraction, 0, at + 2);

@@ -173,11 +173,13 @@ void SteadySolve::run_round(Round& round, const std::function<void(double)>& pro
   }
 }
 
+bool SteadySolve::converged(const Round& round) const { return round.estimate <= settings_.tolerance; }
+
 void SteadySolve::finish_round(Round& round) {
   const Level& fine = levels_[0];
   const int done = round.steps - round.first_step;
   last_step_.enqueue(session_.lattice_queue(), all_blocks(fine), kLocal, loss_, p_, solution_, sums_,
-                     done > 0 ? static_cast<float>(round.alpha + round.for_balance) : 0.0f, round.fresh && done == 1,
+                     done > 0 ? static_cast<float>(round.alpha + (converged(round) ? round.for_balance : 0.0)) : 0.0f, round.fresh && done == 1,
                      channel_, fine.blocks);
   round.fresh = false;
   round.first_step = round.steps;
@@ -204,8 +206,10 @@ void SteadySolve::solve_channel(std::span<const float> q, bool warm, SteadyResul
     write_field(fine.b, q);
     residual();
   }
+  // A solve that was cut off keeps the imbalance that tells so.
   const double found = round.total - round.left;
-  read_field(solution_, round.total > 0 && found > 0 ? static_cast<float>(round.total / found) : 1.0f, u);
+  const bool close = converged(round) && round.total > 0 && found > 0;
+  read_field(solution_, close ? static_cast<float>(round.total / found) : 1.0f, u);
   result.iterations = std::max(result.iterations, round.steps);
   result.error_estimate = std::max(result.error_estimate, round.estimate);
   result.error_before_last = std::max(result.error_before_last, round.before_last);

@@ -31,8 +31,8 @@ class SteadySolve {
   SteadySolve(cl::Session&, const DiffusionMedium&, const SteadySettings&);
   /// q [W]: [channel][block][voxel]. `progress(fraction)` may throw to stop. A warm solve starts from the last answer,
   /// scaled per channel to fit q best; it needs no iteration where that is good enough. Both starts lead to the same
-  /// tolerance, but only the cold one to the same bits whatever was solved before. Each channel of u is scaled (by less
-  /// than the tolerance) so that as much is absorbed and escapes as q emits.
+  /// tolerance, but only the cold one to the same bits whatever was solved before. Each channel of u that has
+  /// met the tolerance is scaled (by less than that) so that as much is absorbed and escapes as q emits.
   SteadyResult solve(const std::vector<float>& q, bool warm = false, const std::function<void(double)>& progress = {});
   /// Device memory held [bytes].
   std::size_t device_bytes() const;
@@ -83,6 +83,7 @@ class SteadySolve {
   void settle(int at, int parts);
   void look(Round& round);
   void run_round(Round& round, const std::function<void(double)>& progress);
+  bool converged(const Round& round) const;
   void finish_round(Round& round);
   void solve_channel(std::span<const float> q, bool warm, SteadyResult&, std::span<float> u,
                      const std::function<void(double)>& progress);

@@ -34,7 +34,7 @@ TEST(Profile, WritesPageTablesAndTraceAndComparesWithItself) {
     names.push_back(event.at("name"));
   }
   EXPECT_GT(complete, 10);
-  for (const char* name : {"march", "view", "smooth_up"})
+  for (const char* name : {"march", "view", "ascend"})
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   // Whatever the times are, the comparison is made and says so.
   const Outcome second = place.turbid(

@@ -26,7 +26,8 @@ Redo LiveScene::update(const Scene& scene, bool afresh) {
                                       .solution = *solution_,
                                       .lights = on_grid_->scene.lights,
                                       .surroundings = on_grid_->scene.surroundings,
-                                      .settings = on_grid_->scene.view});
+                                      .settings = on_grid_->scene.view,
+                                      .first_hits = &first_hits_});
     progress_.finish();
   }
   pending_ = Redo::nothing;
@@ -43,6 +44,7 @@ void LiveScene::voxelise_changes(const Scene& scene, Redo redo) {
   view_.reset();
   solution_.reset();
   solver_.reset();
+  first_hits_.clear();
   on_grid_.emplace(SceneOnGrid{scene, std::move(medium), {}});
   pending_ = Redo::prepare;
 }

@@ -43,7 +43,8 @@ class LiveScene {
   std::optional<LightSolution> solution_;
   bool answered_ = false;                 ///< solver_ has an answer to start from
   bool warm_ = false;
-  std::optional<ViewPass> view_;  ///< refers to on_grid_ and solution_
+  FirstHits first_hits_;                  ///< in on_grid_
+  std::optional<ViewPass> view_;  ///< refers to on_grid_, solution_ and first_hits_
 };
 
 }  // namespace turbid

@@ -65,7 +65,8 @@ std::optional<ViewImage> PreparedScene::look(const LightSolution& solution) {
                       .solution = solution,
                       .lights = scene_.scene.lights,
                       .surroundings = scene_.scene.surroundings,
-                      .settings = scene_.scene.view},
+                      .settings = scene_.scene.view,
+                      .first_hits = &first_hits_},
                      scene_.scene.camera, progress_);
 }
 

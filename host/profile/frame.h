@@ -49,6 +49,7 @@ class PreparedScene {
   Progress& progress_;
   SceneFeatures features_;
   std::unique_ptr<TransportSolver> solver_;
+  FirstHits first_hits_;
 };
 
 /// Records what `work` does, stages of `progress` included.

@@ -18,6 +18,7 @@ struct RasterMesh {
 struct RasterView {
   glm::mat4 view{1}, projection{1};
   int width = 0, height = 0;
+  bool operator==(const RasterView&) const = default;
 };
 
 /// Row 0 is the TOP row; pixel centres are sampled. Arrays have width * height entries, x fastest.

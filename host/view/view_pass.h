@@ -11,6 +11,7 @@
 #include "host/scene/light.h"
 #include "host/scene/settings.h"
 #include "host/transport/solver.h"
+#include "host/view/first_hits.h"
 #include "host/view/image.h"
 #include "volumes/medium_volume.h"
 
@@ -25,6 +26,7 @@ struct ViewInput {
   const LightList& lights;
   const Surroundings& surroundings;
   const ViewSettings& settings;
+  FirstHits* first_hits = nullptr;  ///< of earlier pictures of this medium; null: none are kept
 };
 
 /// A light solution made ready to be looked at, on the device: what all cameras share is computed and uploaded once.

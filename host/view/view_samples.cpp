@@ -13,7 +13,7 @@ SampleMaker::SampleMaker(const ViewInput& in, const Camera& camera, const EntryS
     : in_(in), camera_(camera), space_(space), grid_(static_cast<int>(std::lround(std::sqrt(camera.samples)))) {
   view_ = camera_view(camera.position, camera.target, camera.up, camera.fov, camera.width * grid_,
                       camera.height * grid_, surfaces.bounds);
-  if (!surfaces.meshes.empty()) image_ = rasterise(surfaces.meshes, view_);
+  if (!surfaces.meshes.empty()) image_ = &(in.first_hits ? *in.first_hits : own_hits_).of(surfaces.meshes, view_);
   rays_.emplace(view_);
   ambient_ = surfaces.ambient;
   const glm::vec3 x = space.point(camera.position);
@@ -66,13 +66,13 @@ void SampleMaker::add(int x, int y, std::size_t to, Strip* out) const {
     sample.region = camera_region_;
     depth = 0;
     coverage = 1;
-  } else if (!image_.id.empty() && image_.id[i] >= 0 && image_.front[i]) {
-    const float to_hit = glm::length(image_.position[i] - eye);
+  } else if (image_ && image_->id[i] >= 0 && image_->front[i]) {
+    const float to_hit = glm::length(image_->position[i] - eye);
     if (to_hit < to_ground) {
       depth = to_hit;
-      normal = image_.normal[i];
+      normal = image_->normal[i];
       coverage = 1;
-      start_at(image_.position[i], direction, image_.id[i], normal, &sample);
+      start_at(image_->position[i], direction, image_->id[i], normal, &sample);
     }
   }
   out->samples[to] = sample;

@@ -43,7 +43,7 @@ struct Strip {
 
 class SampleMaker {
  public:
-  /// Rasterises the first hits. Keeps references to the input and the camera.
+  /// Finds the first hits. Keeps references to the input and the camera.
   SampleMaker(const ViewInput&, const Camera&, const EntrySurfaces&, const VoxelSpace&);
   int grid() const { return grid_; }  ///< samples along a pixel's edge
 
@@ -60,7 +60,8 @@ class SampleMaker {
   VoxelSpace space_;
   int grid_;
   RasterView view_;
-  RasterImage image_;
+  FirstHits own_hits_;  ///< where the input keeps none
+  const RasterImage* image_ = nullptr;  ///< null: there are no surfaces
   std::optional<PixelRays> rays_;
   bool ambient_ = false;
   int camera_region_ = -1;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the samples of a camera see first, kept for its next picture: only the bodies and the camera decide it, not the light.
+// What the samples of a camera see first, kept for its next picture: only the bodies and the camera decide it, not the
+// light.
 #pragma once
 #include <list>
 #include <span>
@@ -10,8 +11,8 @@ namespace turbid {
 
 class FirstHits {
  public:
-  /// Rasterises only a view that is not among the last two: a preview is a coarse picture and a fine one in turns. Between
-  /// two calls the meshes' shapes must not change. The answer holds until the next call.
+  /// Rasterises only a view that is not among the last two: a preview is a coarse picture and a fine one in turns.
+  /// Between two calls the meshes' shapes must not change. The answer holds until the next call.
   const RasterImage& of(std::span<const RasterMesh> meshes, const RasterView& view);
   void clear() { kept_.clear(); }
 

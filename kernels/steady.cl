@@ -144,44 +144,44 @@ kernel void true_residual(const global float* conductance, const global float* l
 
 // First half of the V-cycle on the finest level: r -= alpha s of the step before, if there is one; x = smoothed from
 // zero. s and x may be the same.
-kernel void descend(const global float* conductance, const global float* inverse, const global int* neighbours,
+kernel void descend(const global uint* rounded, const global int* neighbours,
                     const global float* s, global float* r, global float* x, global float* handed,
                     const global float* steps, int step, int first, int back, int sweeps, int channel, int blocks) {
   BLOCK_AND_PLACE(back);
-  const Operator a = block_operator(conductance, neighbours, blocks, block, channel);
+  const Rounded a = rounded_operator(rounded, neighbours, blocks, block, channel);
   if (step > first) {
     const float alpha = alpha_of(steps, step - 1);
     for (int v = 0; v < VECTORS; ++v) PUT_VECTOR(v, r + own) = VECTOR(v, r + own) - alpha * VECTOR(v, s + own);
   }
   float16 smooth[WITH_MARGINS], left[VECTORS / 2];
-  smooth_from_zero(&a, inverse + all + own, r + own, smooth, left, sweeps);
+  smooth_from_zero(&a, r + own, smooth, left, sweeps);
   for (int v = 0; v < VECTORS; ++v) PUT_VECTOR(v, x + own) = smooth[MARGIN + v];
   hand_over(&a, smooth, left, handed + (size_t)block * TURBID_HANDED);
 }
 
 // The same on a coarser level, whose b is what the finer one handed over.
-kernel void descend_coarse(const global float* conductance, const global float* inverse, const global int* neighbours,
+kernel void descend_coarse(const global uint* rounded, const global int* neighbours,
                            const global int* children, const global int* fine_neighbours,
                            const global float* fine_handed, global float* b, global float* x, global float* handed,
                            int finer, int sweeps, int channel, int blocks) {
   BLOCK_AND_PLACE(0);
-  const Operator a = block_operator(conductance, neighbours, blocks, block, channel);
+  const Rounded a = rounded_operator(rounded, neighbours, blocks, block, channel);
   take_over(children + 8 * block, fine_neighbours, fine_handed, finer, b + own);
   float16 smooth[WITH_MARGINS], left[VECTORS / 2];
-  smooth_from_zero(&a, inverse + all + own, b + own, smooth, left, sweeps);
+  smooth_from_zero(&a, b + own, smooth, left, sweeps);
   for (int v = 0; v < VECTORS; ++v) PUT_VECTOR(v, x + own) = smooth[MARGIN + v];
   hand_over(&a, smooth, left, handed + (size_t)block * TURBID_HANDED);
 }
 
 // Second half: y = x plus the coarse correction, smoothed; sums[block] = b . y.
-kernel void ascend(const global float* conductance, const global float* inverse, const global int* neighbours,
+kernel void ascend(const global uint* rounded, const global int* neighbours,
                    const global float* b, const global float* x, const global float* coarse, const global int* parent,
                    const global int* octant, global float* y, global float* sums, int back, int sweeps, int channel,
                    int blocks) {
   BLOCK_AND_PLACE(back);
-  const Operator a = block_operator(conductance, neighbours, blocks, block, channel);
+  const Rounded a = rounded_operator(rounded, neighbours, blocks, block, channel);
   float16 smooth[WITH_MARGINS];
-  smooth_corrected(&a, inverse + all + own, b + own, x, coarse, parent, octant, block, smooth, sweeps);
+  smooth_corrected(&a, b + own, x, coarse, parent, octant, block, smooth, sweeps);
   float16 sum = (float16)(0.0f);
   for (int v = 0; v < VECTORS; ++v) {
     PUT_VECTOR(v, y + own) = smooth[MARGIN + v];
@@ -191,33 +191,33 @@ kernel void ascend(const global float* conductance, const global float* inverse,
 }
 
 // The same on a coarser level, whose y is left in natural order for the finer one.
-kernel void ascend_coarse(const global float* conductance, const global float* inverse, const global int* neighbours,
+kernel void ascend_coarse(const global uint* rounded, const global int* neighbours,
                           const global float* b, const global float* x, const global float* coarse,
                           const global int* parent, const global int* octant, global float* y, int sweeps, int channel,
                           int blocks) {
   BLOCK_AND_PLACE(0);
-  const Operator a = block_operator(conductance, neighbours, blocks, block, channel);
+  const Rounded a = rounded_operator(rounded, neighbours, blocks, block, channel);
   float16 smooth[WITH_MARGINS];
-  smooth_corrected(&a, inverse + all + own, b + own, x, coarse, parent, octant, block, smooth, sweeps);
+  smooth_corrected(&a, b + own, x, coarse, parent, octant, block, smooth, sweeps);
   put_natural(smooth + MARGIN, 1.0f, y + own);
 }
 
 // The V-cycle's lower end, levels of one block each, in one work-item: launches would take longer than the work.
 // Operators are [level][channel][block and the block of zeros][voxel], fields [level][block, zeros][voxel], octants and
 // `handed` [level][block, zeros]; y of the first level, in natural order, is the result.
-kernel void coarse_cycle(const global float* conductance, const global float* inverse, const global int* nothing_around,
+kernel void coarse_cycle(const global uint* rounded, const global int* nothing_around,
                          const global int* children, const global int* fine_neighbours, const global float* fine_handed,
                          const global int* only_child, const global int* parent, const global int* octant,
                          global float* b, global float* x, global float* y, global float* handed, int levels, int finer,
                          int sweeps, int channel, int channels) {
   if (get_global_id(0) > 0) return;
-  const size_t field = 2 * TURBID_BLOCK_VOXELS, all = field * channels;
+  const size_t field = 2 * TURBID_BLOCK_VOXELS, all = 8 * PAIRS * channels;
   take_over(children, fine_neighbours, fine_handed, finer, b);
   for (int level = 0; level < levels; ++level) {
     const size_t at = level * field;
-    const Operator a = block_operator(conductance + 3 * level * all, nothing_around, 1, 0, channel);
+    const Rounded a = rounded_operator(rounded + level * all, nothing_around, 1, 0, channel);
     float16 smooth[WITH_MARGINS], left[VECTORS / 2];
-    smooth_from_zero(&a, inverse + level * all + channel * field, b + at, smooth, left, sweeps);
+    smooth_from_zero(&a, b + at, smooth, left, sweeps);
     if (level + 1 == levels) {
       put_natural(smooth + MARGIN, 1.0f, y + at);
       break;
@@ -228,9 +228,9 @@ kernel void coarse_cycle(const global float* conductance, const global float* in
   }
   for (int level = levels - 2; level >= 0; --level) {
     const size_t at = level * field;
-    const Operator a = block_operator(conductance + 3 * level * all, nothing_around, 1, 0, channel);
+    const Rounded a = rounded_operator(rounded + level * all, nothing_around, 1, 0, channel);
     float16 smooth[WITH_MARGINS];
-    smooth_corrected(&a, inverse + level * all + channel * field, b + at, x + at, y + at + field, parent,
+    smooth_corrected(&a, b + at, x + at, y + at + field, parent,
                      octant + 2 * level, 0, smooth, sweeps);
     put_natural(smooth + MARGIN, 1.0f, y + at);
   }

@@ -82,7 +82,7 @@ double SteadySolve::dot_with_solution(const F& v) {
 
 void SteadySolve::residual() {
   Level& fine = levels_[0];
-  residual_.enqueue(session_.lattice_queue(), all_blocks(fine), kLocal, fine.conductance, loss_, fine.neighbours,
+  residual_.enqueue(session_.lattice_queue(), all_blocks(fine), kLocal, conductance_, loss_, fine.neighbours,
                     fine.b, solution_, fine.b, sums_, channel_, fine.blocks);
 }
 
@@ -91,7 +91,7 @@ void SteadySolve::step(const Round& round) {
   const int number = round.steps, first = round.first_step;
   // The solution takes up each step one later, as that reads p anyway.
   const bool fresh = round.fresh && number == first + 1;
-  next_step_.enqueue(session_.lattice_queue(), all_blocks(fine), kLocal, fine.conductance, loss_, fine.neighbours,
+  next_step_.enqueue(session_.lattice_queue(), all_blocks(fine), kLocal, conductance_, loss_, fine.neighbours,
                      fine.y, number > first ? p_ : fine.y, next_p_, fine.x, solution_, sums_, steps_, number, first,
                      fresh, padded_, turn(), channel_, fine.blocks);
   settle(TURBID_STEP * number + 1, 2);

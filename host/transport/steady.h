@@ -40,11 +40,12 @@ class SteadySolve {
  protected:
   using F = cl::Buffer<float>;
   using I = cl::Buffer<std::int32_t>;
+  using W = cl::Buffer<std::uint32_t>;
 
-  /// Operators hold all channels, fields one.
+  /// The operator holds all channels, fields one.
   struct Level {
     int blocks = 0;
-    F conductance, inverse;
+    W rounded;  ///< operator
     F b, x, y, handed;  ///< y in natural order but on the finest level
     I neighbours, children, parent, octant;
   };
@@ -95,14 +96,14 @@ class SteadySolve {
   cl::Kernel<F, F, I, F, F, F, F, F, F, F, int, int, int, int, int, int, int> next_step_;
   cl::Kernel<F, F, F, F, float, int, int, int> last_step_;
   cl::Kernel<F, F, I, F, F, F, F, int, int> residual_;
-  cl::Kernel<F, F, I, F, F, F, F, F, int, int, int, int, int, int> descend_;
-  cl::Kernel<F, F, I, I, I, F, F, F, F, int, int, int, int> descend_coarse_;
-  cl::Kernel<F, F, I, F, F, F, I, I, F, F, int, int, int, int> ascend_;
-  cl::Kernel<F, F, I, F, F, F, I, I, F, int, int, int> ascend_coarse_;
-  cl::Kernel<F, F, I, I, I, F, I, I, I, F, F, F, F, int, int, int, int, int> coarse_cycle_;
+  cl::Kernel<W, I, F, F, F, F, F, int, int, int, int, int, int> descend_;
+  cl::Kernel<W, I, I, I, F, F, F, F, int, int, int, int> descend_coarse_;
+  cl::Kernel<W, I, F, F, F, I, I, F, F, int, int, int, int> ascend_;
+  cl::Kernel<W, I, F, F, F, I, I, F, int, int, int> ascend_coarse_;
+  cl::Kernel<W, I, I, I, F, I, I, I, F, F, F, F, int, int, int, int, int> coarse_cycle_;
   cl::Kernel<F, F, F, int, int> dot_;
   cl::Kernel<F, float, int, int> scale_;
-  F loss_, solution_;  ///< of all channels
+  F conductance_, loss_, solution_;  ///< of all channels
   F p_, next_p_, sums_;
   I only_child_;  ///< of levels of one block
   F steps_;       ///< [step][TURBID_STEP]

@@ -61,9 +61,11 @@ kernel void pack(const global float* values, global float* field, int blocks) {
   }
 }
 
-// The other way, of one channel, times a factor.
-kernel void unpack(const global float* field, global float* values, float factor, int channel, int blocks) {
+// The other way, of one channel, times total / lost[channel] unless `total` is 0.
+kernel void unpack(const global float* field, global float* values, const global float* lost, float total, int channel,
+                   int blocks) {
   BLOCK_AND_PLACE(0);
+  const float factor = total > 0.0f && lost[channel] > 0.0f ? total / lost[channel] : 1.0f;
   float16 x[VECTORS];
   for (int v = 0; v < VECTORS; ++v) x[v] = VECTOR(v, field + all + own);
   put_natural(x, factor, values + own);

@@ -45,7 +45,7 @@ class SteadySolve {
   /// The operator holds all channels, fields one.
   struct Level {
     int blocks = 0;
-    W rounded;  ///< operator
+    W rounded;          ///< operator
     F b, x, y, handed;  ///< y in natural order but on the finest level
     I neighbours, children, parent, octant;
   };
@@ -61,8 +61,9 @@ class SteadySolve {
   /// One channel, [block][voxel], into packed order; spoils next_p_. Neither this nor the next waits until `values` are
   /// copied.
   void write_field(F& buffer, std::span<const float> values);
-  /// The channel of a field of all that is being solved, times a factor; spoils next_p_.
-  void read_field(const F& buffer, float factor, std::span<float> values);
+  /// The channel of a field of all that is being solved, scaled so that `total` is lost instead of lost_ (0: not
+  /// scaled); spoils next_p_.
+  void read_field(const F& buffer, float total, std::span<float> values);
 
   cl::Session& session_;
   SteadySettings settings_;
@@ -80,19 +81,19 @@ class SteadySolve {
   double dot_with_solution(const F& v);
   void residual();
   void start_from_last(std::span<const float> q, Round& round);
-  void step(const Round& round);
-  void settle(int at, int parts);
-  void look(Round& round);
+  void step(Round& round);
+  void settle(F& to, int at, int parts);
+  void look(Round& round, int until);
   void run_round(Round& round, const std::function<void(double)>& progress);
-  void finish_round(Round& round);
-  void solve_channel(std::span<const float> q, bool warm, SteadyResult&, std::span<float> u,
-                     const std::function<void(double)>& progress);
+  void finish_round(Round& round, std::span<float> u);
+  void start_channel(std::span<const float> q, bool warm, Round& round);
+  void find_left(std::vector<Round>& rounds);
   int turn() { return back_ = !back_; }
 
   cl::Program program_;
   cl::Kernel<F, F, int, int, int> settle_;
   cl::Kernel<F, F, int> pack_;
-  cl::Kernel<F, F, float, int, int> unpack_;
+  cl::Kernel<F, F, F, float, int, int> unpack_;
   cl::Kernel<F, F, I, F, F, F, F, F, F, F, int, int, int, int, int, int, int> next_step_;
   cl::Kernel<F, F, F, F, float, int, int, int> last_step_;
   cl::Kernel<F, F, I, F, F, F, F, int, int> residual_;
@@ -107,6 +108,7 @@ class SteadySolve {
   F p_, next_p_, sums_;
   I only_child_;  ///< of levels of one block
   F steps_;       ///< [step][TURBID_STEP]
+  F lost_;        ///< [channel]: sum of A x, absorbed and escaped
   std::vector<float> host_sums_, host_steps_;
   bool solved_ = false;
   bool back_ = false;  ///< direction of the last kernel through the finest level

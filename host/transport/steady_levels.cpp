@@ -69,12 +69,13 @@ SteadySolve::SteadySolve(cl::Session& session, const DiffusionMedium& medium, co
   sums_ = session.zeros<float>(2 * host_sums_.size());
   host_steps_.resize(TURBID_STEP * (static_cast<std::size_t>(settings.max_iterations) + 1));
   steps_ = session.zeros<float>(host_steps_.size());
+  lost_ = session.zeros<float>(channels_);
   only_child_ = session.upload(std::vector<std::int32_t>{0, 1, 1, 1, 1, 1, 1, 1});
 }
 
 std::size_t SteadySolve::device_bytes() const {
-  std::size_t bytes = conductance_.bytes() + loss_.bytes() + solution_.bytes() + p_.bytes() + next_p_.bytes() + sums_.bytes() +
-                      steps_.bytes() + only_child_.bytes();
+  std::size_t bytes = conductance_.bytes() + loss_.bytes() + solution_.bytes() + p_.bytes() + next_p_.bytes() +
+                      sums_.bytes() + steps_.bytes() + lost_.bytes() + only_child_.bytes();
   for (const Level& level : levels_) {
     for (const F* field : {&level.b, &level.x, &level.y, &level.handed}) bytes += field->bytes();
     bytes += level.rounded.bytes();
@@ -89,19 +90,18 @@ void SteadySolve::coarse_correction() {
   const std::size_t last = levels_.size() - 1;
   for (std::size_t i = 1; i < last; ++i) {
     Level &level = levels_[i], &finer = levels_[i - 1];
-    descend_coarse_.enqueue(queue, all_blocks(level), kLocal, level.rounded, level.neighbours,
-                            level.children, finer.neighbours, finer.handed, level.b, level.x, level.handed,
-                            finer.blocks, sweeps, channel_, level.blocks);
+    descend_coarse_.enqueue(queue, all_blocks(level), kLocal, level.rounded, level.neighbours, level.children,
+                            finer.neighbours, finer.handed, level.b, level.x, level.handed, finer.blocks, sweeps,
+                            channel_, level.blocks);
   }
   Level &tail = levels_[last], &finer = levels_[last - 1];
-  coarse_cycle_.enqueue(queue, {1, 1}, kLocal, tail.rounded, tail.neighbours, tail.children,
-                        finer.neighbours, finer.handed, only_child_, tail.parent, tail.octant, tail.b, tail.x, tail.y,
-                        tail.handed, tail_levels_, finer.blocks, sweeps, channel_, channels_);
+  coarse_cycle_.enqueue(queue, {1, 1}, kLocal, tail.rounded, tail.neighbours, tail.children, finer.neighbours,
+                        finer.handed, only_child_, tail.parent, tail.octant, tail.b, tail.x, tail.y, tail.handed,
+                        tail_levels_, finer.blocks, sweeps, channel_, channels_);
   for (std::size_t i = last - 1; i >= 1; --i) {
     Level &level = levels_[i], &coarse = levels_[i + 1];
-    ascend_coarse_.enqueue(queue, all_blocks(level), kLocal, level.rounded, level.neighbours,
-                           level.b, level.x, coarse.y, level.parent, level.octant, level.y, sweeps, channel_,
-                           level.blocks);
+    ascend_coarse_.enqueue(queue, all_blocks(level), kLocal, level.rounded, level.neighbours, level.b, level.x,
+                           coarse.y, level.parent, level.octant, level.y, sweeps, channel_, level.blocks);
   }
 }
 
@@ -110,16 +110,16 @@ void SteadySolve::v_cycle(int step, int first) {
   Level &fine = levels_[0], &coarse = levels_[1];
   const int sweeps = settings_.smoothing_sweeps;
   // x holds A p until the block that needs it has taken it off b, and from then on what is smoothed.
-  descend_.enqueue(queue, all_blocks(fine), kLocal, fine.rounded, fine.neighbours, fine.x, fine.b,
-                   fine.x, fine.handed, steps_, step, first, turn(), sweeps, channel_, fine.blocks);
+  descend_.enqueue(queue, all_blocks(fine), kLocal, fine.rounded, fine.neighbours, fine.x, fine.b, fine.x, fine.handed,
+                   steps_, step, first, turn(), sweeps, channel_, fine.blocks);
   coarse_correction();
-  ascend_.enqueue(queue, all_blocks(fine), kLocal, fine.rounded, fine.neighbours, fine.b, fine.x,
-                  coarse.y, fine.parent, fine.octant, fine.y, sums_, turn(), sweeps, channel_, fine.blocks);
-  settle(TURBID_STEP * step, 1);
+  ascend_.enqueue(queue, all_blocks(fine), kLocal, fine.rounded, fine.neighbours, fine.b, fine.x, coarse.y, fine.parent,
+                  fine.octant, fine.y, sums_, turn(), sweeps, channel_, fine.blocks);
+  settle(steps_, TURBID_STEP * step, 1);
 }
 
-void SteadySolve::settle(int at, int parts) {
-  settle_.enqueue(session_.lattice_queue(), {1, 1}, kLocal, sums_, steps_, at, parts, padded_);
+void SteadySolve::settle(F& to, int at, int parts) {
+  settle_.enqueue(session_.lattice_queue(), {1, 1}, kLocal, sums_, to, at, parts, padded_);
 }
 
 void SteadySolve::write_field(F& buffer, std::span<const float> values) {
@@ -127,8 +127,8 @@ void SteadySolve::write_field(F& buffer, std::span<const float> values) {
   pack_.enqueue(session_.lattice_queue(), all_blocks(levels_[0]), kLocal, next_p_, buffer, levels_[0].blocks);
 }
 
-void SteadySolve::read_field(const F& buffer, float factor, std::span<float> values) {
-  unpack_.enqueue(session_.lattice_queue(), all_blocks(levels_[0]), kLocal, buffer, next_p_, factor, channel_,
+void SteadySolve::read_field(const F& buffer, float total, std::span<float> values) {
+  unpack_.enqueue(session_.lattice_queue(), all_blocks(levels_[0]), kLocal, buffer, next_p_, lost_, total, channel_,
                   levels_[0].blocks);
   session_.read(session_.lattice_queue(), next_p_, values, false);
 }

@@ -53,7 +53,7 @@ class Device : public SteadySolve {
       work();
       product_ = block_sum();
       channel_ = 0;  // y holds one channel
-      read_field(levels_[0].y, 1, found);
+      read_field(levels_[0].y, 0, found);
       session_.lattice_queue().finish();
       result.insert(result.end(), found.begin(), found.end());
     }

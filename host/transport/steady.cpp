@@ -99,7 +99,7 @@ void SteadySolve::step(Round& round) {
   const bool fresh = round.fresh && number == first + 1;
   next_step_.enqueue(session_.lattice_queue(), all_blocks(fine), kLocal, conductance_, loss_, fine.neighbours, fine.y,
                      number > first ? p_ : fine.y, next_p_, fine.x, solution_, sums_, steps_, number, first, fresh,
-                     padded_, turn(), channel_, fine.blocks);
+                     padded_, channel_, fine.blocks);
   settle(steps_, TURBID_STEP * number + 1, 2);
   std::swap(p_, next_p_);
   round.read.push_back(session_.read_part(session_.lattice_queue(), steps_, TURBID_STEP * number,
@@ -211,7 +211,6 @@ SteadyResult SteadySolve::solve(const std::vector<float>& q, bool warm, const st
   SteadyResult result;
   if (levels_[0].blocks == 0) return result;
   result.u.resize(q.size());
-  back_ = false;
   const Settled settled{session_.lattice_queue()};
   const auto part = [this](auto& values) { return std::span(values).subspan(channel_ * stride_, stride_); };
   std::vector<Round> rounds(channels_);

@@ -88,18 +88,17 @@ class SteadySolve {
   void finish_round(Round& round, std::span<float> u);
   void start_channel(std::span<const float> q, bool warm, Round& round);
   void find_left(std::vector<Round>& rounds);
-  int turn() { return back_ = !back_; }
 
   cl::Program program_;
   cl::Kernel<F, F, int, int, int> settle_;
   cl::Kernel<F, F, int> pack_;
   cl::Kernel<F, F, F, float, int, int> unpack_;
-  cl::Kernel<F, F, I, F, F, F, F, F, F, F, int, int, int, int, int, int, int> next_step_;
+  cl::Kernel<F, F, I, F, F, F, F, F, F, F, int, int, int, int, int, int> next_step_;
   cl::Kernel<F, F, F, F, float, int, int, int> last_step_;
   cl::Kernel<F, F, I, F, F, F, F, int, int> residual_;
-  cl::Kernel<W, I, F, F, F, F, F, int, int, int, int, int, int> descend_;
+  cl::Kernel<W, I, F, F, F, F, F, int, int, int, int, int> descend_;
   cl::Kernel<W, I, I, I, F, F, F, F, int, int, int, int> descend_coarse_;
-  cl::Kernel<W, I, F, F, F, I, I, F, F, int, int, int, int> ascend_;
+  cl::Kernel<W, I, F, F, F, I, I, F, F, int, int, int> ascend_;
   cl::Kernel<W, I, F, F, F, I, I, F, int, int, int> ascend_coarse_;
   cl::Kernel<W, I, I, I, F, I, I, I, F, F, F, F, int, int, int, int, int> coarse_cycle_;
   cl::Kernel<F, F, F, int, int> dot_;
@@ -111,7 +110,6 @@ class SteadySolve {
   F lost_;        ///< [channel]: sum of A x, absorbed and escaped
   std::vector<float> host_sums_, host_steps_;
   bool solved_ = false;
-  bool back_ = false;  ///< direction of the last kernel through the finest level
 };
 
 }  // namespace turbid

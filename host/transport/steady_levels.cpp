@@ -111,10 +111,10 @@ void SteadySolve::v_cycle(int step, int first) {
   const int sweeps = settings_.smoothing_sweeps;
   // x holds A p until the block that needs it has taken it off b, and from then on what is smoothed.
   descend_.enqueue(queue, all_blocks(fine), kLocal, fine.rounded, fine.neighbours, fine.x, fine.b, fine.x, fine.handed,
-                   steps_, step, first, turn(), sweeps, channel_, fine.blocks);
+                   steps_, step, first, sweeps, channel_, fine.blocks);
   coarse_correction();
   ascend_.enqueue(queue, all_blocks(fine), kLocal, fine.rounded, fine.neighbours, fine.b, fine.x, coarse.y, fine.parent,
-                  fine.octant, fine.y, sums_, turn(), sweeps, channel_, fine.blocks);
+                  fine.octant, fine.y, sums_, sweeps, channel_, fine.blocks);
   settle(steps_, TURBID_STEP * step, 1);
 }
 
@@ -136,7 +136,7 @@ void SteadySolve::read_field(const F& buffer, float total, std::span<float> valu
 void SteadySolve::apply(const F& x, F& out) {
   const Level& fine = levels_[0];
   next_step_.enqueue(session_.lattice_queue(), all_blocks(fine), kLocal, conductance_, loss_, fine.neighbours, x, x,
-                     next_p_, out, solution_, sums_, steps_, 0, 0, 0, padded_, 0, channel_, fine.blocks);
+                     next_p_, out, solution_, sums_, steps_, 0, 0, 0, padded_, channel_, fine.blocks);
 }
 
 }  // namespace turbid

@@ -29,8 +29,7 @@ BLOCK_INLINE void clear_margins(float16* x) {
 
 // x = smoothed from zero, red first. Returns in `left` the residual of the red voxels within the block; the black ones
 // have none.
-BLOCK_INLINE void smooth_from_zero(const Rounded* a, const global float* b, float16* x,
-                                   float16* left, int sweeps) {
+BLOCK_INLINE void smooth_from_zero(const Rounded* a, const global float* b, float16* x, float16* left, int sweeps) {
   clear_margins(x);
   for (int i = 0; i < 16; ++i) {
     x[MARGIN + 2 * i] = VECTOR(2 * i, b) * widened(2 * i, a->inverse);
@@ -144,9 +143,9 @@ BLOCK_INLINE const global float* eighth(const global float* coarse, const global
 
 // x = s + coarse correction, smoothed black first (the V-cycle stays symmetric) with the neighbours' s + correction
 // frozen. s and coarse: all blocks of this channel.
-BLOCK_INLINE void smooth_corrected(const Rounded* a, const global float* b,
-                                   const global float* s, const global float* coarse, const global int* parent,
-                                   const global int* octant, int block, float16* x, int sweeps) {
+BLOCK_INLINE void smooth_corrected(const Rounded* a, const global float* b, const global float* s,
+                                   const global float* coarse, const global int* parent, const global int* octant,
+                                   int block, float16* x, int sweeps) {
   float16 rhs[VECTORS];
   const global float* own = eighth(coarse, parent, octant, block);
   const global float *over[6], *next[6];
@@ -161,7 +160,7 @@ BLOCK_INLINE void smooth_corrected(const Rounded* a, const global float* b,
     UNROLL for (int i = 0; i < 4; ++i) {
       const int dz = i >> 1, c = i & 1, v = PLACE(2 * zz + dz, k, c), o = v ^ 1, odd = (c ^ dz) & 1;
       const float16 none = (float16)(0.0f);
-      x[MARGIN + v] = VECTOR(v, s + a->own) + here;
+      if (c == 0) x[MARGIN + v] = VECTOR(v, s + a->own) + here;  // black voxels are the first to be replaced
       const float16 t = west_east(rounded_below_x(a, v, odd), widened(v, a->t[0]), odd);
       float16 sum = VECTOR(v, b);
       sum += t * west_east(x_below(none, VECTOR(o, next[0]) + west, odd), x_above(none, VECTOR(o, next[1]) + east, odd),

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The diffusion operator as the smoother takes it: conductances and 1 / diagonal rounded to 16 bits (a float's upper
 // half, off by at most .2 %), which halves what has to be read of them. The preconditioner stays symmetric, as both
-// voxels at a face take the same conductance, and positive, as the sweeps' 1 / diagonal is positive; conjugate gradients
-// around it take the exact operator.
+// voxels at a face take the same conductance, and positive, as the sweeps' 1 / diagonal is positive; conjugate
+// gradients around it take the exact operator.
 //
 // A word holds a voxel of colour 0 (upper half) and the one of colour 1 in the same lane of the same rows (lower half):
 // vectors v and v ^ 1 of lib/packed_block.h.

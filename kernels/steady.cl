@@ -16,12 +16,11 @@
 #include "lib/block_smoother.h"
 
 // This work-item's block, its place in a field of one channel, and the place of this channel's first block in those of
-// all. Kernels that follow each other go through a field in opposite directions: the caches then still hold what comes
-// first.
-#define BLOCK_AND_PLACE(back)                                                            \
-  if (get_global_id(0) >= blocks) return;                                                \
-  const int block = (back) ? blocks - 1 - (int)get_global_id(0) : (int)get_global_id(0); \
-  const size_t own = (size_t)block * TURBID_BLOCK_VOXELS;                                \
+// all.
+#define BLOCK_AND_PLACE                                   \
+  if (get_global_id(0) >= blocks) return;                 \
+  const int block = (int)get_global_id(0);                \
+  const size_t own = (size_t)block * TURBID_BLOCK_VOXELS; \
   const size_t all = (size_t)channel * (blocks + 1) * TURBID_BLOCK_VOXELS
 
 // Step sizes from what `settle` wrote: alpha = r.z / p.A p of a step, beta = r.z / that of the step before.
@@ -52,7 +51,7 @@ kernel void settle(const global float* sums, global float* steps, int at, int pa
 // values[block][voxel], x fastest, into packed order.
 kernel void pack(const global float* values, global float* field, int blocks) {
   const int channel = 0;
-  BLOCK_AND_PLACE(0);
+  BLOCK_AND_PLACE;
   FOR_PAIRS FOR_HALVES {
     const int row = 4 * (2 * zz + dz) + 2 * k;
     const float16 first = VECTOR(row, values + own), second = VECTOR(row + 1, values + own);
@@ -61,9 +60,11 @@ kernel void pack(const global float* values, global float* field, int blocks) {
   }
 }
 
-// The other way, of one channel, times a factor.
-kernel void unpack(const global float* field, global float* values, float factor, int channel, int blocks) {
-  BLOCK_AND_PLACE(0);
+// The other way, of one channel, times total / lost[channel] unless `total` is 0.
+kernel void unpack(const global float* field, global float* values, const global float* lost, float total, int channel,
+                   int blocks) {
+  BLOCK_AND_PLACE;
+  const float factor = total > 0.0f && lost[channel] > 0.0f ? total / lost[channel] : 1.0f;
   float16 x[VECTORS];
   for (int v = 0; v < VECTORS; ++v) x[v] = VECTOR(v, field + all + own);
   put_natural(x, factor, values + own);
@@ -74,8 +75,8 @@ kernel void unpack(const global float* field, global float* values, float factor
 kernel void next_step(const global float* conductance, const global float* loss, const global int* neighbours,
                       const global float* z, const global float* p, global float* next_p, global float* s,
                       global float* x, global float* sums, const global float* steps, int step, int first, int fresh,
-                      int padded, int back, int channel, int blocks) {
-  BLOCK_AND_PLACE(back);
+                      int padded, int channel, int blocks) {
+  BLOCK_AND_PLACE;
   const float alpha = step > first ? alpha_of(steps, step - 1) : 0.0f,
               beta = step > first ? beta_of(steps, step) : 0.0f;
   const Operator a = block_operator(conductance, neighbours, blocks, block, channel);
@@ -110,7 +111,7 @@ kernel void next_step(const global float* conductance, const global float* loss,
 // exchanged between voxels cancels.
 kernel void last_step(const global float* loss, const global float* p, global float* x, global float* sums, float alpha,
                       int fresh, int channel, int blocks) {
-  BLOCK_AND_PLACE(0);
+  BLOCK_AND_PLACE;
   float16 sum = (float16)(0.0f);
   for (int v = 0; v < VECTORS; ++v) {
     const float16 gain = alpha * VECTOR(v, p + own), found = fresh ? gain : VECTOR(v, x + all + own) + gain;
@@ -124,7 +125,7 @@ kernel void last_step(const global float* loss, const global float* p, global fl
 kernel void true_residual(const global float* conductance, const global float* loss, const global int* neighbours,
                           const global float* b, const global float* x, global float* r, global float* sums,
                           int channel, int blocks) {
-  BLOCK_AND_PLACE(0);
+  BLOCK_AND_PLACE;
   const Operator a = block_operator(conductance, neighbours, blocks, block, channel);
   const Sum field = {x + all, x + all, 0.0f};
   float16 here[WITH_MARGINS];
@@ -144,44 +145,42 @@ kernel void true_residual(const global float* conductance, const global float* l
 
 // First half of the V-cycle on the finest level: r -= alpha s of the step before, if there is one; x = smoothed from
 // zero. s and x may be the same.
-kernel void descend(const global float* conductance, const global float* inverse, const global int* neighbours,
-                    const global float* s, global float* r, global float* x, global float* handed,
-                    const global float* steps, int step, int first, int back, int sweeps, int channel, int blocks) {
-  BLOCK_AND_PLACE(back);
-  const Operator a = block_operator(conductance, neighbours, blocks, block, channel);
+kernel void descend(const global uint* rounded, const global int* neighbours, const global float* s, global float* r,
+                    global float* x, global float* handed, const global float* steps, int step, int first, int sweeps,
+                    int channel, int blocks) {
+  BLOCK_AND_PLACE;
+  const Rounded a = rounded_operator(rounded, neighbours, blocks, block, channel);
   if (step > first) {
     const float alpha = alpha_of(steps, step - 1);
     for (int v = 0; v < VECTORS; ++v) PUT_VECTOR(v, r + own) = VECTOR(v, r + own) - alpha * VECTOR(v, s + own);
   }
   float16 smooth[WITH_MARGINS], left[VECTORS / 2];
-  smooth_from_zero(&a, inverse + all + own, r + own, smooth, left, sweeps);
+  smooth_from_zero(&a, r + own, smooth, left, sweeps);
   for (int v = 0; v < VECTORS; ++v) PUT_VECTOR(v, x + own) = smooth[MARGIN + v];
   hand_over(&a, smooth, left, handed + (size_t)block * TURBID_HANDED);
 }
 
 // The same on a coarser level, whose b is what the finer one handed over.
-kernel void descend_coarse(const global float* conductance, const global float* inverse, const global int* neighbours,
-                           const global int* children, const global int* fine_neighbours,
-                           const global float* fine_handed, global float* b, global float* x, global float* handed,
-                           int finer, int sweeps, int channel, int blocks) {
-  BLOCK_AND_PLACE(0);
-  const Operator a = block_operator(conductance, neighbours, blocks, block, channel);
+kernel void descend_coarse(const global uint* rounded, const global int* neighbours, const global int* children,
+                           const global int* fine_neighbours, const global float* fine_handed, global float* b,
+                           global float* x, global float* handed, int finer, int sweeps, int channel, int blocks) {
+  BLOCK_AND_PLACE;
+  const Rounded a = rounded_operator(rounded, neighbours, blocks, block, channel);
   take_over(children + 8 * block, fine_neighbours, fine_handed, finer, b + own);
   float16 smooth[WITH_MARGINS], left[VECTORS / 2];
-  smooth_from_zero(&a, inverse + all + own, b + own, smooth, left, sweeps);
+  smooth_from_zero(&a, b + own, smooth, left, sweeps);
   for (int v = 0; v < VECTORS; ++v) PUT_VECTOR(v, x + own) = smooth[MARGIN + v];
   hand_over(&a, smooth, left, handed + (size_t)block * TURBID_HANDED);
 }
 
 // Second half: y = x plus the coarse correction, smoothed; sums[block] = b . y.
-kernel void ascend(const global float* conductance, const global float* inverse, const global int* neighbours,
-                   const global float* b, const global float* x, const global float* coarse, const global int* parent,
-                   const global int* octant, global float* y, global float* sums, int back, int sweeps, int channel,
-                   int blocks) {
-  BLOCK_AND_PLACE(back);
-  const Operator a = block_operator(conductance, neighbours, blocks, block, channel);
+kernel void ascend(const global uint* rounded, const global int* neighbours, const global float* b,
+                   const global float* x, const global float* coarse, const global int* parent,
+                   const global int* octant, global float* y, global float* sums, int sweeps, int channel, int blocks) {
+  BLOCK_AND_PLACE;
+  const Rounded a = rounded_operator(rounded, neighbours, blocks, block, channel);
   float16 smooth[WITH_MARGINS];
-  smooth_corrected(&a, inverse + all + own, b + own, x, coarse, parent, octant, block, smooth, sweeps);
+  smooth_corrected(&a, b + own, x, coarse, parent, octant, block, smooth, sweeps);
   float16 sum = (float16)(0.0f);
   for (int v = 0; v < VECTORS; ++v) {
     PUT_VECTOR(v, y + own) = smooth[MARGIN + v];
@@ -191,33 +190,32 @@ kernel void ascend(const global float* conductance, const global float* inverse,
 }
 
 // The same on a coarser level, whose y is left in natural order for the finer one.
-kernel void ascend_coarse(const global float* conductance, const global float* inverse, const global int* neighbours,
-                          const global float* b, const global float* x, const global float* coarse,
-                          const global int* parent, const global int* octant, global float* y, int sweeps, int channel,
-                          int blocks) {
-  BLOCK_AND_PLACE(0);
-  const Operator a = block_operator(conductance, neighbours, blocks, block, channel);
+kernel void ascend_coarse(const global uint* rounded, const global int* neighbours, const global float* b,
+                          const global float* x, const global float* coarse, const global int* parent,
+                          const global int* octant, global float* y, int sweeps, int channel, int blocks) {
+  BLOCK_AND_PLACE;
+  const Rounded a = rounded_operator(rounded, neighbours, blocks, block, channel);
   float16 smooth[WITH_MARGINS];
-  smooth_corrected(&a, inverse + all + own, b + own, x, coarse, parent, octant, block, smooth, sweeps);
+  smooth_corrected(&a, b + own, x, coarse, parent, octant, block, smooth, sweeps);
   put_natural(smooth + MARGIN, 1.0f, y + own);
 }
 
 // The V-cycle's lower end, levels of one block each, in one work-item: launches would take longer than the work.
 // Operators are [level][channel][block and the block of zeros][voxel], fields [level][block, zeros][voxel], octants and
 // `handed` [level][block, zeros]; y of the first level, in natural order, is the result.
-kernel void coarse_cycle(const global float* conductance, const global float* inverse, const global int* nothing_around,
-                         const global int* children, const global int* fine_neighbours, const global float* fine_handed,
+kernel void coarse_cycle(const global uint* rounded, const global int* nothing_around, const global int* children,
+                         const global int* fine_neighbours, const global float* fine_handed,
                          const global int* only_child, const global int* parent, const global int* octant,
                          global float* b, global float* x, global float* y, global float* handed, int levels, int finer,
                          int sweeps, int channel, int channels) {
   if (get_global_id(0) > 0) return;
-  const size_t field = 2 * TURBID_BLOCK_VOXELS, all = field * channels;
+  const size_t field = 2 * TURBID_BLOCK_VOXELS, all = 8 * PAIRS * channels;
   take_over(children, fine_neighbours, fine_handed, finer, b);
   for (int level = 0; level < levels; ++level) {
     const size_t at = level * field;
-    const Operator a = block_operator(conductance + 3 * level * all, nothing_around, 1, 0, channel);
+    const Rounded a = rounded_operator(rounded + level * all, nothing_around, 1, 0, channel);
     float16 smooth[WITH_MARGINS], left[VECTORS / 2];
-    smooth_from_zero(&a, inverse + level * all + channel * field, b + at, smooth, left, sweeps);
+    smooth_from_zero(&a, b + at, smooth, left, sweeps);
     if (level + 1 == levels) {
       put_natural(smooth + MARGIN, 1.0f, y + at);
       break;
@@ -228,17 +226,16 @@ kernel void coarse_cycle(const global float* conductance, const global float* in
   }
   for (int level = levels - 2; level >= 0; --level) {
     const size_t at = level * field;
-    const Operator a = block_operator(conductance + 3 * level * all, nothing_around, 1, 0, channel);
+    const Rounded a = rounded_operator(rounded + level * all, nothing_around, 1, 0, channel);
     float16 smooth[WITH_MARGINS];
-    smooth_corrected(&a, inverse + level * all + channel * field, b + at, x + at, y + at + field, parent,
-                     octant + 2 * level, 0, smooth, sweeps);
+    smooth_corrected(&a, b + at, x + at, y + at + field, parent, octant + 2 * level, 0, smooth, sweeps);
     put_natural(smooth + MARGIN, 1.0f, y + at);
   }
 }
 
 // sums[block] = u . w over the block; u holds all channels.
 kernel void dot_product(const global float* u, const global float* w, global float* sums, int channel, int blocks) {
-  BLOCK_AND_PLACE(0);
+  BLOCK_AND_PLACE;
   float16 sum = (float16)(0.0f);
   for (int v = 0; v < VECTORS; ++v) sum += VECTOR(v, u + all + own) * VECTOR(v, w + own);
   sums[block] = sum16(sum);
@@ -246,6 +243,6 @@ kernel void dot_product(const global float* u, const global float* w, global flo
 
 // x *= factor; x holds all channels.
 kernel void scale(global float* x, float factor, int channel, int blocks) {
-  BLOCK_AND_PLACE(0);
+  BLOCK_AND_PLACE;
   for (int v = 0; v < VECTORS; ++v) PUT_VECTOR(v, x + all + own) = factor * VECTOR(v, x + all + own);
 }

@@ -67,8 +67,8 @@ class Buffer {
   Buffer(cl_context context, std::size_t count, const std::shared_ptr<MemoryCount>& memory = {}) : count_(count) {
     cl_int status = CL_SUCCESS;
     // OpenCL forbids empty buffers: a stage that has nothing to store keeps one element.
-    handle_ = MemoryHandle(
-        clCreateBuffer(context, CL_MEM_READ_WRITE, sizeof(T) * (count ? count : 1), nullptr, &status));
+    handle_ =
+        MemoryHandle(clCreateBuffer(context, CL_MEM_READ_WRITE, sizeof(T) * (count ? count : 1), nullptr, &status));
     check(status, "allocating device memory");
     counted_ = CountedBytes(memory, bytes());
   }
@@ -145,10 +145,8 @@ class Kernel {
     check(clSetKernelArg(handle_.get(), index, sizeof(cl_mem), &memory), name_);
   }
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  void set(cl_uint index, const T& value) {
-    check(clSetKernelArg(handle_.get(), index, sizeof(T), &value), name_);
-  }
+  requires std::is_trivially_copyable_v<T>
+  void set(cl_uint index, const T& value) { check(clSetKernelArg(handle_.get(), index, sizeof(T), &value), name_); }
 
   template <class T>
   void note(Recording& recording, cl_uint index, const Buffer<T>& buffer) {
@@ -226,6 +224,17 @@ class Session {
                               recording.event()),
           "reading from the device");
     recording.finish();
+  }
+  /// Some values from the one numbered `first` on; doesn't block, but returns the event of their arrival.
+  template <class T>
+  EventHandle read_part(Queue& queue, const Buffer<T>& buffer, std::size_t first, std::span<T> values) {
+    Recording recording(queue, "read");
+    recording.touches("from", values.size_bytes(), buffer.get());
+    recording.want_event();
+    check(clEnqueueReadBuffer(queue.get(), buffer.get(), false, first * sizeof(T), values.size_bytes(), values.data(),
+                              0, nullptr, recording.event()),
+          "reading from the device");
+    return recording.finish();
   }
   template <class T>
   std::vector<T> read(Queue& queue, const Buffer<T>& buffer) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "host/base/parallel.h"
 #include "kernels/shared/lattice_params.h"
@@ -114,13 +115,12 @@ MultigridLevel empty_level(const BlockGrid& blocks, int channels) {
   MultigridLevel level{.blocks = blocks,
                        .conductance = {},
                        .loss = {},
-                       .inverse = {},
+                       .rounded = {},
                        .neighbours = {},
                        .children = {},
                        .parent = {},
                        .octant = {}};
-  level.conductance.assign(level.stride() * 3 * channels, 0.0f);
-  level.inverse.assign(level.stride() * channels, 0.0f);
+  level.rounded.assign(level.stride() / 2 * 4 * channels, 0);
   for (const auto& around : blocks.neighbours())
     level.neighbours.insert(level.neighbours.end(), around.begin(), around.end());
   return level;
@@ -136,21 +136,30 @@ float conductance_below(const Operator& from, const MultigridLevel& level, std::
              : 0.0f;
 }
 
+/// Rounds to 16 bits, into one half of its word (kernels/lib/rounded_operator.h).
+void put_rounded(std::uint32_t* words, std::size_t place, float value) {
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  const std::uint32_t half = (bits + 0x7fff + (bits >> 16 & 1)) >> 16;
+  words[place / 32 * 16 + place % 16] |= place / 16 % 2 == 0 ? half << 16 : half;
+}
+
 void store(MultigridLevel& level, const Operator& from, int channel) {
   const auto& place = packed_places();
-  float* loss = level.loss.empty() ? nullptr : level.loss.data() + channel * level.stride();
-  float* inverse = level.inverse.data() + channel * level.stride();
-  float* conductance = level.conductance.data() + 3 * channel * level.stride();
+  const std::size_t stride = level.stride();
+  float* loss = level.loss.empty() ? nullptr : level.loss.data() + channel * stride;
+  float* conductance = level.conductance.empty() ? nullptr : level.conductance.data() + 3 * channel * stride;
+  std::uint32_t* rounded = level.rounded.data() + 4 * channel * (stride / 2);
   for (std::size_t i = 0; i < from.absorption.size(); ++i) {
     const std::size_t to = i - i % kVoxels + place[i % kVoxels];
     float sum = from.absorption[i];
     for (const auto& face : from.boundary) sum += face[i];
     if (loss) loss[to] = sum;
     for (int axis = 0; axis < 3; ++axis) {
-      conductance[axis * level.stride() + to] = from.t[axis][i];
+      if (conductance) conductance[axis * stride + to] = from.t[axis][i];
+      put_rounded(rounded + axis * (stride / 2), to, from.t[axis][i]);
       sum += from.t[axis][i] + conductance_below(from, level, i, axis);
     }
-    inverse[to] = sum > 0.0f ? 1.0f / sum : 0.0f;
+    if (sum > 0.0f) put_rounded(rounded + 3 * (stride / 2), to, 1.0f / sum);
   }
 }
 
@@ -182,7 +191,8 @@ const std::array<std::int16_t, 512>& packed_places() {
 std::vector<MultigridLevel> build_multigrid(const DiffusionMedium& medium) {
   std::vector<MultigridLevel> levels;
   levels.push_back(empty_level(medium.blocks, medium.channels));
-  levels[0].loss = levels[0].inverse;  // zeros
+  levels[0].conductance.assign(levels[0].stride() * 3 * medium.channels, 0.0f);
+  levels[0].loss.assign(levels[0].stride() * medium.channels, 0.0f);
   glm::ivec3 extent = medium.frame.voxels;
   while (std::max({extent.x, extent.y, extent.z}) > 1) {
     MultigridLevel next = empty_level(coarse_blocks(levels.back().blocks), medium.channels);

@@ -12,9 +12,11 @@ namespace turbid {
 /// end of each channel.
 struct MultigridLevel {
   BlockGrid blocks;
-  std::vector<float> conductance;  ///< [channel][axis][block][voxel], the face towards the upper neighbour
-  std::vector<float> loss;     ///< [channel][block][voxel]: absorption plus boundary losses; of the finest level only
-  std::vector<float> inverse;  ///< [channel][block][voxel]: 1 / the operator's diagonal, 0 where nothing is
+  /// Of the finest level only: [channel][axis][block][voxel], the face towards the upper neighbour, and
+  /// [channel][block][voxel], absorption plus boundary losses.
+  std::vector<float> conductance, loss;
+  /// What the smoother takes (kernels/lib/rounded_operator.h): conductances and 1 / the diagonal (0 where nothing is).
+  std::vector<std::uint32_t> rounded;
   std::vector<std::int32_t> neighbours;  ///< 6 per block
   std::vector<std::int32_t> children;    ///< 8 per block, x first: of the next finer level; its block of zeros for none
   /// Per block and for the block of zeros: where it lies in the next coarser level.

@@ -17,8 +17,8 @@ constexpr double kResidualToError = 3.0;
 // What is still to be gained is continued geometrically. Twice the larger of the last two ratios of gains bounds the
 // rest in all media tried (cases 18 and 19, `verify --hard`).
 constexpr double kFallMargin = 2.0, kSlowestFall = 0.9;
-// Three steps are needed in all media tried where the tolerance is below this, and few steps gain more than the factor.
-constexpr double kSoonest = 1e-2, kMostPerStep = 12.0;
+// Few steps gain more than this factor.
+constexpr double kMostPerStep = 12.0;
 
 double ratio(double part, double whole) {
   return whole > 0 ? std::abs(part) / whole : 0.0;
@@ -52,6 +52,11 @@ Foretold foretell(double gain, double last, double before_last) {
   return {before, std::min(before, gain * slow / (1 - slow))};
 }
 
+/// Steps that it takes at least from one error to another.
+int steps_between(double error, double goal) {
+  return std::max(1, static_cast<int>(std::ceil(std::log(error / goal) / std::log(kMostPerStep))));
+}
+
 }  // namespace
 
 /// Conjugate gradients of one channel from a true residual on.
@@ -67,6 +72,7 @@ struct SteadySolve::Round {
   double for_balance = 0;  ///< to be added to it
   double estimate = 0, before_last = 0;
   std::vector<double> gains;
+  std::vector<cl::EventHandle> read;  ///< of each step: its scalars have come
 };
 
 double SteadySolve::block_sum() {
@@ -82,20 +88,23 @@ double SteadySolve::dot_with_solution(const F& v) {
 
 void SteadySolve::residual() {
   Level& fine = levels_[0];
-  residual_.enqueue(session_.lattice_queue(), all_blocks(fine), kLocal, fine.conductance, loss_, fine.neighbours,
-                    fine.b, solution_, fine.b, sums_, channel_, fine.blocks);
+  residual_.enqueue(session_.lattice_queue(), all_blocks(fine), kLocal, conductance_, loss_, fine.neighbours, fine.b,
+                    solution_, fine.b, sums_, channel_, fine.blocks);
 }
 
-void SteadySolve::step(const Round& round) {
+void SteadySolve::step(Round& round) {
   Level& fine = levels_[0];
   const int number = round.steps, first = round.first_step;
   // The solution takes up each step one later, as that reads p anyway.
   const bool fresh = round.fresh && number == first + 1;
-  next_step_.enqueue(session_.lattice_queue(), all_blocks(fine), kLocal, fine.conductance, loss_, fine.neighbours,
-                     fine.y, number > first ? p_ : fine.y, next_p_, fine.x, solution_, sums_, steps_, number, first,
-                     fresh, padded_, turn(), channel_, fine.blocks);
-  settle(TURBID_STEP * number + 1, 2);
+  next_step_.enqueue(session_.lattice_queue(), all_blocks(fine), kLocal, conductance_, loss_, fine.neighbours, fine.y,
+                     number > first ? p_ : fine.y, next_p_, fine.x, solution_, sums_, steps_, number, first, fresh,
+                     padded_, channel_, fine.blocks);
+  settle(steps_, TURBID_STEP * number + 1, 2);
   std::swap(p_, next_p_);
+  round.read.push_back(session_.read_part(session_.lattice_queue(), steps_, TURBID_STEP * number,
+                                          std::span<float>(host_steps_).subspan(TURBID_STEP * number, TURBID_STEP)));
+  ++round.steps;
 }
 
 void SteadySolve::start_from_last(std::span<const float> q, Round& round) {
@@ -118,9 +127,10 @@ void SteadySolve::start_from_last(std::span<const float> q, Round& round) {
   round.left = block_sum();
 }
 
-void SteadySolve::look(Round& round) {
-  session_.read(session_.lattice_queue(), steps_, std::span<float>(host_steps_).first(TURBID_STEP * round.steps));
-  for (; round.seen < round.steps; ++round.seen) {
+void SteadySolve::look(Round& round, int until) {
+  const cl_event last_read = round.read[until - 1].get();
+  cl::check(clWaitForEvents(1, &last_read), "waiting for a step");
+  for (; round.seen < until; ++round.seen) {
     const float* found = host_steps_.data() + TURBID_STEP * round.seen;
     const double rz = found[0], pap = found[1], sum_s = found[2], gain = pap > 0 ? rz / pap * rz : 0.0;
     const int back = round.seen - round.first_step;
@@ -153,81 +163,89 @@ void SteadySolve::run_round(Round& round, const std::function<void(double)>& pro
     round.estimate = round.before_last = at_start;
     if (at_start + ratio(round.left, round.total) <= goal) return;
   }
-  // A look costs as much as a kernel: not where a step can't have sufficed.
-  int look_at = round.first_step + (round.fresh && goal < kSoonest ? 3 : 1);
+  const int limit =
+      round.first_step > 0 ? std::min(round.first_step + 6, settings_.max_iterations) : settings_.max_iterations;
+  int wanted = round.first_step + (round.fresh ? steps_between(1, goal) : 1);
   for (;;) {
-    step(round);
-    ++round.steps;
-    const bool full = round.steps == settings_.max_iterations;
-    if (round.steps >= look_at || full) {
-      look(round);
-      if (progress) {
-        const double part = std::log(std::max(round.estimate, 1e-12)) / std::log(goal);
-        progress((channel_ + std::clamp(part, 0.0, 1.0)) / channels_);
-      }
-      const bool again = round.first_step > 0 && round.steps - round.first_step >= 6;
-      if (round.estimate <= goal || again || full) return;
-      look_at = round.steps + (round.estimate > kMostPerStep * goal ? 2 : 1);
+    for (wanted = std::min(wanted, limit); round.steps < wanted;) {
+      if (round.steps > round.first_step) v_cycle(round.steps, round.first_step);
+      step(round);
     }
-    v_cycle(round.steps, round.first_step);
+    // While one step is being looked at, the next already runs if it is needed anyway.
+    look(round, std::max(round.seen + 1, round.steps - 1));
+    if (progress) {
+      const double part = std::log(std::max(round.estimate, 1e-12)) / std::log(goal);
+      progress((channel_ + std::clamp(part, 0.0, 1.0)) / channels_);
+    }
+    const bool enough = round.estimate <= goal;
+    if (round.seen == round.steps && (enough || round.steps == limit)) return;
+    if (!enough) wanted = round.seen + std::min(2, steps_between(round.estimate, goal));
   }
 }
 
 bool SteadySolve::converged(const Round& round) const { return round.estimate <= settings_.tolerance; }
 
-void SteadySolve::finish_round(Round& round) {
+void SteadySolve::finish_round(Round& round, std::span<float> u) {
   const Level& fine = levels_[0];
   const int done = round.steps - round.first_step;
+  const bool close = converged(round);  // a solve that was cut off keeps the imbalance that tells so
   last_step_.enqueue(session_.lattice_queue(), all_blocks(fine), kLocal, loss_, p_, solution_, sums_,
-                     done > 0 ? static_cast<float>(round.alpha + (converged(round) ? round.for_balance : 0.0)) : 0.0f, round.fresh && done == 1,
-                     channel_, fine.blocks);
+                     done > 0 ? static_cast<float>(round.alpha + (close ? round.for_balance : 0.0)) : 0.0f,
+                     round.fresh && done == 1, channel_, fine.blocks);
+  settle(lost_, channel_, 1);
+  read_field(solution_, close ? static_cast<float>(round.total) : 0.0f, u);
   round.fresh = false;
   round.first_step = round.steps;
-  round.left = round.total - block_sum();
 }
 
-void SteadySolve::solve_channel(std::span<const float> q, bool warm, SteadyResult& result, std::span<float> u,
-                                const std::function<void(double)>& progress) {
-  Level& fine = levels_[0];
-  Round round;
+void SteadySolve::start_channel(std::span<const float> q, bool warm, Round& round) {
   round.fresh = !warm;
-  if (round.fresh) write_field(fine.b, q);
+  if (round.fresh) write_field(levels_[0].b, q);
   round.left = round.total = sum_of(q);
   if (warm) start_from_last(q, round);
-  // Each round starts from the true residual, so that rounding in the recursive one can't hide an imbalance; the second
-  // and later rounds are iterative refinement.
-  for (;;) {
-    const int before = round.steps;
-    run_round(round, progress);
-    finish_round(round);
-    if (ratio(round.left, round.total) <= settings_.tolerance || round.steps == before ||
-        round.steps >= settings_.max_iterations)
-      break;
-    write_field(fine.b, q);
-    residual();
-  }
-  // A solve that was cut off keeps the imbalance that tells so.
-  const double found = round.total - round.left;
-  const bool close = converged(round) && round.total > 0 && found > 0;
-  read_field(solution_, close ? static_cast<float>(round.total / found) : 1.0f, u);
-  result.iterations = std::max(result.iterations, round.steps);
-  result.error_estimate = std::max(result.error_estimate, round.estimate);
-  result.error_before_last = std::max(result.error_before_last, round.before_last);
-  result.residual_sum = std::max(result.residual_sum, ratio(round.left, round.total));
-  result.gains.resize(result.iterations);
-  for (std::size_t i = 0; i < round.gains.size(); ++i) result.gains[i][channel_] = ratio(round.gains[i], round.energy);
+}
+
+void SteadySolve::find_left(std::vector<Round>& rounds) {
+  const std::vector<float> lost = session_.read(session_.lattice_queue(), lost_);
+  for (std::size_t c = 0; c < rounds.size(); ++c) rounds[c].left = rounds[c].total - lost[c];
 }
 
 SteadyResult SteadySolve::solve(const std::vector<float>& q, bool warm, const std::function<void(double)>& progress) {
   SteadyResult result;
   if (levels_[0].blocks == 0) return result;
   result.u.resize(q.size());
-  back_ = false;
   const Settled settled{session_.lattice_queue()};
+  const auto part = [this](auto& values) { return std::span(values).subspan(channel_ * stride_, stride_); };
+  std::vector<Round> rounds(channels_);
   for (channel_ = 0; channel_ < channels_; ++channel_) {
-    const std::size_t first = channel_ * stride_;
-    solve_channel(std::span(q).subspan(first, stride_), warm && solved_, result,
-                  std::span(result.u).subspan(first, stride_), progress);
+    Round& round = rounds[channel_];
+    start_channel(part(q), warm && solved_, round);
+    run_round(round, progress);
+    finish_round(round, part(result.u));
+  }
+  find_left(rounds);
+  // Each round starts from the true residual, so that rounding in the recursive one can't hide an imbalance; the second
+  // and later rounds, which few media need, are iterative refinement.
+  for (channel_ = 0; channel_ < channels_; ++channel_) {
+    Round& round = rounds[channel_];
+    for (int before = 0; ratio(round.left, round.total) > settings_.tolerance && round.steps > before &&
+                         round.steps < settings_.max_iterations;) {
+      before = round.steps;
+      write_field(levels_[0].b, part(q));
+      residual();
+      run_round(round, progress);
+      finish_round(round, part(result.u));
+      find_left(rounds);
+    }
+  }
+  for (const Round& round : rounds) {
+    result.iterations = std::max(result.iterations, round.steps);
+    result.error_estimate = std::max(result.error_estimate, round.estimate);
+    result.error_before_last = std::max(result.error_before_last, round.before_last);
+    result.residual_sum = std::max(result.residual_sum, ratio(round.left, round.total));
+    result.gains.resize(result.iterations);
+    const std::size_t c = &round - rounds.data();
+    for (std::size_t i = 0; i < round.gains.size(); ++i) result.gains[i][c] = ratio(round.gains[i], round.energy);
   }
   channel_ = 0;
   solved_ = true;

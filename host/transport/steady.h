@@ -40,11 +40,12 @@ class SteadySolve {
  protected:
   using F = cl::Buffer<float>;
   using I = cl::Buffer<std::int32_t>;
+  using W = cl::Buffer<std::uint32_t>;
 
-  /// Operators hold all channels, fields one.
+  /// The operator holds all channels, fields one.
   struct Level {
     int blocks = 0;
-    F conductance, inverse;
+    W rounded;          ///< operator
     F b, x, y, handed;  ///< y in natural order but on the finest level
     I neighbours, children, parent, octant;
   };
@@ -60,8 +61,9 @@ class SteadySolve {
   /// One channel, [block][voxel], into packed order; spoils next_p_. Neither this nor the next waits until `values` are
   /// copied.
   void write_field(F& buffer, std::span<const float> values);
-  /// The channel of a field of all that is being solved, times a factor; spoils next_p_.
-  void read_field(const F& buffer, float factor, std::span<float> values);
+  /// The channel of a field of all that is being solved, scaled so that `total` is lost instead of lost_ (0: not
+  /// scaled); spoils next_p_.
+  void read_field(const F& buffer, float total, std::span<float> values);
 
   cl::Session& session_;
   SteadySettings settings_;
@@ -79,37 +81,36 @@ class SteadySolve {
   double dot_with_solution(const F& v);
   void residual();
   void start_from_last(std::span<const float> q, Round& round);
-  void step(const Round& round);
-  void settle(int at, int parts);
-  void look(Round& round);
+  void step(Round& round);
+  void settle(F& to, int at, int parts);
+  void look(Round& round, int until);
   void run_round(Round& round, const std::function<void(double)>& progress);
   bool converged(const Round& round) const;
-  void finish_round(Round& round);
-  void solve_channel(std::span<const float> q, bool warm, SteadyResult&, std::span<float> u,
-                     const std::function<void(double)>& progress);
-  int turn() { return back_ = !back_; }
+  void finish_round(Round& round, std::span<float> u);
+  void start_channel(std::span<const float> q, bool warm, Round& round);
+  void find_left(std::vector<Round>& rounds);
 
   cl::Program program_;
   cl::Kernel<F, F, int, int, int> settle_;
   cl::Kernel<F, F, int> pack_;
-  cl::Kernel<F, F, float, int, int> unpack_;
-  cl::Kernel<F, F, I, F, F, F, F, F, F, F, int, int, int, int, int, int, int> next_step_;
+  cl::Kernel<F, F, F, float, int, int> unpack_;
+  cl::Kernel<F, F, I, F, F, F, F, F, F, F, int, int, int, int, int, int> next_step_;
   cl::Kernel<F, F, F, F, float, int, int, int> last_step_;
   cl::Kernel<F, F, I, F, F, F, F, int, int> residual_;
-  cl::Kernel<F, F, I, F, F, F, F, F, int, int, int, int, int, int> descend_;
-  cl::Kernel<F, F, I, I, I, F, F, F, F, int, int, int, int> descend_coarse_;
-  cl::Kernel<F, F, I, F, F, F, I, I, F, F, int, int, int, int> ascend_;
-  cl::Kernel<F, F, I, F, F, F, I, I, F, int, int, int> ascend_coarse_;
-  cl::Kernel<F, F, I, I, I, F, I, I, I, F, F, F, F, int, int, int, int, int> coarse_cycle_;
+  cl::Kernel<W, I, F, F, F, F, F, int, int, int, int, int> descend_;
+  cl::Kernel<W, I, I, I, F, F, F, F, int, int, int, int> descend_coarse_;
+  cl::Kernel<W, I, F, F, F, I, I, F, F, int, int, int> ascend_;
+  cl::Kernel<W, I, F, F, F, I, I, F, int, int, int> ascend_coarse_;
+  cl::Kernel<W, I, I, I, F, I, I, I, F, F, F, F, int, int, int, int, int> coarse_cycle_;
   cl::Kernel<F, F, F, int, int> dot_;
   cl::Kernel<F, float, int, int> scale_;
-  F loss_, solution_;  ///< of all channels
+  F conductance_, loss_, solution_;  ///< of all channels
   F p_, next_p_, sums_;
   I only_child_;  ///< of levels of one block
   F steps_;       ///< [step][TURBID_STEP]
+  F lost_;        ///< [channel]: sum of A x, absorbed and escaped
   std::vector<float> host_sums_, host_steps_;
   bool solved_ = false;
-  bool back_ = false;  ///< direction of the last kernel through the finest level
 };
 
 }  // namespace turbid

@@ -10,7 +10,8 @@ void SteadySolver::prepare_diffusion(const DiffusionMedium& medium) {
 
 DiffuseLight SteadySolver::diffuse(const LightSource& source) {
   const DiffusionMedium& medium = diffusion_medium();
-  SteadyResult result = solve_->solve(source.power, warm_start(), [&](double fraction) { context_.progress.update(fraction); });
+  SteadyResult result =
+      solve_->solve(source.power, warm_start(), [&](double fraction) { context_.progress.update(fraction); });
   DiffuseLight light;
   light.iterations = result.iterations;
   light.error_estimate = result.error_estimate;

@@ -7,19 +7,19 @@
 // nothing has to be read twice.
 #ifndef TURBID_LIB_BLOCK_SMOOTHER_H
 #define TURBID_LIB_BLOCK_SMOOTHER_H
-#include "lib/packed_block.h"
+#include "lib/rounded_operator.h"
 
 // sum of T x_j over the neighbours of a vector within its block; x has margins of zeros.
-BLOCK_INLINE float16 pull(const Operator* a, const float16* x, int zz, int dz, int k, int c) {
+BLOCK_INLINE float16 pull(const Rounded* a, const float16* x, int zz, int dz, int k, int c) {
   const int v = PLACE(2 * zz + dz, k, c), o = v ^ 1, odd = (c ^ dz) & 1;
-  const float16 none = (float16)(0.0f), other = x[MARGIN + o], t_other = VECTOR(o, a->t[0]),
-                t_other_y = VECTOR(o, a->t[1]);
+  const float16 none = (float16)(0.0f), other = x[MARGIN + o], t_other = widened(o, a->t[0]),
+                t_other_y = widened(o, a->t[1]);
   float16 sum = x_below(t_other, none, odd) * x_below(other, none, odd);
-  sum += VECTOR(v, a->t[0]) * x_above(other, none, odd);
-  sum += y_below(t_other_y, k ? VECTOR(o - 2, a->t[1]) : none) * y_below(other, k ? x[MARGIN + o - 2] : none);
-  sum += VECTOR(v, a->t[1]) * y_above(other, k ? none : x[MARGIN + o + 2]);
-  sum += t_below_z(a, v, zz, dz) * x[MARGIN + o - 4];
-  sum += VECTOR(v, a->t[2]) * x[MARGIN + o + 4];
+  sum += widened(v, a->t[0]) * x_above(other, none, odd);
+  sum += y_below(t_other_y, k ? widened(o - 2, a->t[1]) : none) * y_below(other, k ? x[MARGIN + o - 2] : none);
+  sum += widened(v, a->t[1]) * y_above(other, k ? none : x[MARGIN + o + 2]);
+  sum += rounded_below_z(a, v, zz, dz) * x[MARGIN + o - 4];
+  sum += widened(v, a->t[2]) * x[MARGIN + o + 4];
   return sum;
 }
 
@@ -29,24 +29,23 @@ BLOCK_INLINE void clear_margins(float16* x) {
 
 // x = smoothed from zero, red first. Returns in `left` the residual of the red voxels within the block; the black ones
 // have none.
-BLOCK_INLINE void smooth_from_zero(const Operator* a, const global float* inverse, const global float* b, float16* x,
-                                   float16* left, int sweeps) {
+BLOCK_INLINE void smooth_from_zero(const Rounded* a, const global float* b, float16* x, float16* left, int sweeps) {
   clear_margins(x);
   for (int i = 0; i < 16; ++i) {
-    x[MARGIN + 2 * i] = VECTOR(2 * i, b) * VECTOR(2 * i, inverse);
+    x[MARGIN + 2 * i] = VECTOR(2 * i, b) * widened(2 * i, a->inverse);
     left[i] = (float16)(0.0f);
   }
   for (int sweep = 0;; ++sweep) {
     FOR_PAIRS FOR_HALVES {
       const int v = PLACE(2 * zz + dz, k, 1);
-      x[MARGIN + v] = (VECTOR(v, b) + pull(a, x, zz, dz, k, 1)) * VECTOR(v, inverse);
+      x[MARGIN + v] = (VECTOR(v, b) + pull(a, x, zz, dz, k, 1)) * widened(v, a->inverse);
     }
     if (sweep + 1 >= sweeps) break;
     FOR_PAIRS FOR_HALVES {
       const int v = PLACE(2 * zz + dz, k, 0);
       const float16 sum = pull(a, x, zz, dz, k, 0);
       left[v >> 1] = sum;
-      x[MARGIN + v] = (VECTOR(v, b) + sum) * VECTOR(v, inverse);
+      x[MARGIN + v] = (VECTOR(v, b) + sum) * widened(v, a->inverse);
     }
   }
   // b + pull at the last red sweep was the diagonal's share; what the black voxels have sent since is left.
@@ -57,7 +56,7 @@ BLOCK_INLINE void smooth_from_zero(const Operator* a, const global float* invers
 }
 
 // What the sweeps left and what the block sends across its faces, for the coarser level.
-BLOCK_INLINE void hand_over(const Operator* a, const float16* with_margins, const float16* left, global float* handed) {
+BLOCK_INLINE void hand_over(const Rounded* a, const float16* with_margins, const float16* left, global float* handed) {
   const float16* x = with_margins + MARGIN;
   global float* faces = handed + 64;
   FOR_PAIRS {
@@ -68,10 +67,10 @@ BLOCK_INLINE void hand_over(const Operator* a, const float16* with_margins, cons
       float16 sides[2] = {(float16)(0.0f), (float16)(0.0f)};
       UNROLL for (int i = 0; i < 4; ++i) {
         const int dz = i >> 1, c = i & 1, v = PLACE(2 * zz + dz, k, c), odd = (c ^ dz) & 1;
-        const float16 t = west_east(t_below_x(a, v, odd), VECTOR(v, a->t[0]), odd);
+        const float16 t = west_east(rounded_below_x(a, v, odd), widened(v, a->t[0]), odd);
         sides[odd] += t * x[v];
-        if (k == 0) south += VECTOR((v ^ 1) + 2, a->below[1]).scdef * x[v].s0123;
-        if (k == 1) north += VECTOR(v, a->t[1]).scdef * x[v].scdef;
+        if (k == 0) south += widened((v ^ 1) + 2, a->below[1]).scdef * x[v].s0123;
+        if (k == 1) north += widened(v, a->t[1]).scdef * x[v].scdef;
       }
       vstore2((float2)(sides[0].s0 + sides[1].s4, sides[0].s8 + sides[1].sc), 2 * zz + k, faces);
       vstore2((float2)(sides[0].s7 + sides[1].s3, sides[0].sf + sides[1].sb), 2 * zz + k, faces + 16);
@@ -81,8 +80,8 @@ BLOCK_INLINE void hand_over(const Operator* a, const float16* with_margins, cons
   }
   UNROLL for (int k = 0; k < 2; ++k) {
     const int low = PLACE(0, k, 0), high = PLACE(7, k, 0);
-    const float16 down = VECTOR(low + 29, a->below[2]) * x[low] + VECTOR(low + 28, a->below[2]) * x[low + 1];
-    const float16 up = VECTOR(high, a->t[2]) * x[high] + VECTOR(high + 1, a->t[2]) * x[high + 1];
+    const float16 down = widened(low + 29, a->below[2]) * x[low] + widened(low + 28, a->below[2]) * x[low + 1];
+    const float16 up = widened(high, a->t[2]) * x[high] + widened(high + 1, a->t[2]) * x[high + 1];
     vstore8((float8)(down.s0123 + down.s4567, down.s89ab + down.scdef), k, faces + 64);
     vstore8((float8)(up.s0123 + up.s4567, up.s89ab + up.scdef), k, faces + 80);
   }
@@ -144,9 +143,9 @@ BLOCK_INLINE const global float* eighth(const global float* coarse, const global
 
 // x = s + coarse correction, smoothed black first (the V-cycle stays symmetric) with the neighbours' s + correction
 // frozen. s and coarse: all blocks of this channel.
-BLOCK_INLINE void smooth_corrected(const Operator* a, const global float* inverse, const global float* b,
-                                   const global float* s, const global float* coarse, const global int* parent,
-                                   const global int* octant, int block, float16* x, int sweeps) {
+BLOCK_INLINE void smooth_corrected(const Rounded* a, const global float* b, const global float* s,
+                                   const global float* coarse, const global int* parent, const global int* octant,
+                                   int block, float16* x, int sweeps) {
   float16 rhs[VECTORS];
   const global float* own = eighth(coarse, parent, octant, block);
   const global float *over[6], *next[6];
@@ -161,13 +160,13 @@ BLOCK_INLINE void smooth_corrected(const Operator* a, const global float* invers
     UNROLL for (int i = 0; i < 4; ++i) {
       const int dz = i >> 1, c = i & 1, v = PLACE(2 * zz + dz, k, c), o = v ^ 1, odd = (c ^ dz) & 1;
       const float16 none = (float16)(0.0f);
-      x[MARGIN + v] = VECTOR(v, s + a->own) + here;
-      const float16 t = west_east(t_below_x(a, v, odd), VECTOR(v, a->t[0]), odd);
+      if (c == 0) x[MARGIN + v] = VECTOR(v, s + a->own) + here;  // black voxels are the first to be replaced
+      const float16 t = west_east(rounded_below_x(a, v, odd), widened(v, a->t[0]), odd);
       float16 sum = VECTOR(v, b);
       sum += t * west_east(x_below(none, VECTOR(o, next[0]) + west, odd), x_above(none, VECTOR(o, next[1]) + east, odd),
                            odd);
-      if (k == 0) sum += y_below(none, VECTOR(o + 2, a->below[1]) * (VECTOR(o + 2, next[2]) + side));
-      if (k == 1) sum += last_row(VECTOR(v, a->t[1])) * y_above(none, VECTOR(o - 2, next[3]) + side);
+      if (k == 0) sum += y_below(none, widened(o + 2, a->below[1]) * (VECTOR(o + 2, next[2]) + side));
+      if (k == 1) sum += last_row(widened(v, a->t[1])) * y_above(none, VECTOR(o - 2, next[3]) + side);
       rhs[v] = sum;
     }
   }
@@ -175,18 +174,18 @@ BLOCK_INLINE void smooth_corrected(const Operator* a, const global float* invers
     const float16 down = prolonged(over[4], 3, k), up = prolonged(over[5], 0, k);
     UNROLL for (int c = 0; c < 2; ++c) {
       const int low = PLACE(0, k, c), high = PLACE(7, k, c), below = PLACE(7, k, 1 - c), above = PLACE(0, k, 1 - c);
-      rhs[low] += VECTOR(below, a->below[2]) * (VECTOR(below, next[4]) + down);
-      rhs[high] += VECTOR(high, a->t[2]) * (VECTOR(above, next[5]) + up);
+      rhs[low] += widened(below, a->below[2]) * (VECTOR(below, next[4]) + down);
+      rhs[high] += widened(high, a->t[2]) * (VECTOR(above, next[5]) + up);
     }
   }
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     FOR_PAIRS FOR_HALVES {
       const int v = PLACE(2 * zz + dz, k, 1);
-      x[MARGIN + v] = (rhs[v] + pull(a, x, zz, dz, k, 1)) * VECTOR(v, inverse);
+      x[MARGIN + v] = (rhs[v] + pull(a, x, zz, dz, k, 1)) * widened(v, a->inverse);
     }
     FOR_PAIRS FOR_HALVES {
       const int v = PLACE(2 * zz + dz, k, 0);
-      x[MARGIN + v] = (rhs[v] + pull(a, x, zz, dz, k, 0)) * VECTOR(v, inverse);
+      x[MARGIN + v] = (rhs[v] + pull(a, x, zz, dz, k, 0)) * widened(v, a->inverse);
     }
   }
 }
